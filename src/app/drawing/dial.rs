@@ -92,9 +92,9 @@ impl IdleDial {
         snapshot: &Snapshot,
         wanted: &(dyn Fn() -> bool + Sync),
     ) -> Finer {
-        let Some(wish) = snapshot.dial else { return Finer::Done };
-        let Snapshot { scene, view, settings, size, .. } = snapshot;
-        let of = Dialled::of((scene, view), settings, *size, wish);
+        let Some(wish) = snapshot.options.dial else { return Finer::Done };
+        let Snapshot { scene, view, settings, options } = snapshot;
+        let of = Dialled::of((scene, view), settings, options.size, wish);
         if self.of.as_ref() != Some(&of) {
             self.dial = Some(Dial::new(&of.shot(), &of.all()));
             self.of = Some(of.clone());
@@ -118,8 +118,8 @@ impl IdleDial {
         window: PixelBox,
         wanted: &(dyn Fn() -> bool + Sync),
     ) -> Option<Picture> {
-        let Snapshot { scene, view, settings, size, .. } = snapshot;
-        let plan = plan_frame(&Shot::new(scene, view, &settings.ideal(), *size));
+        let Snapshot { scene, view, settings, options } = snapshot;
+        let plan = plan_frame(&Shot::new(scene, view, &settings.ideal(), options.size));
         self.renderer.render_window(&plan, window, wanted).ok()
     }
 }

@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use serde::{Deserialize, Serialize};
+
 use super::dial::DialWish;
 use marraztu_core::accuracy::{Samples, Settings};
 use marraztu_core::base::image::Size;
@@ -13,6 +15,12 @@ pub(crate) struct Snapshot {
     pub(crate) scene: Scene,
     pub(crate) view: View,
     pub(crate) settings: Settings,
+    pub(crate) options: DrawOptions,
+}
+
+/// The size of a picture, and the way of the window to draw it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct DrawOptions {
     pub(crate) size: Size,
     /// Whether the scene is moving. If it is, the picture may be drawn at reduced quality.
     pub(crate) moving: bool,
@@ -46,9 +54,9 @@ pub(crate) fn pictured(view: &View) -> View {
 impl Snapshot {
     /// Returns whether another snapshot differs in more than the time.
     pub(crate) fn differs_from(&self, other: &Self) -> bool {
-        let Self { scene, view, settings, size, moving: _, .. } = self;
+        let Self { scene, view, settings, options } = self;
         let view = |of: &View| View { time: view.time, ..of.clone() };
-        (*settings, *size) != (other.settings, other.size)
+        (*settings, options.size) != (other.settings, other.options.size)
             || *scene != other.scene
             || self.view != view(&other.view)
     }

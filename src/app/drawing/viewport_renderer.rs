@@ -7,6 +7,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use egui::ColorImage;
+use serde::{Deserialize, Serialize};
 
 use super::adaptive_quality::{AdaptiveQuality, Attempt};
 use super::border::Border;
@@ -24,8 +25,9 @@ use marraztu_render::screen::coverage::PixelBox;
 use marraztu_render::{Cancelled, Damage, FramePlan, Hit, Renderer};
 
 /// A drawn picture.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Drawn {
+    #[serde(with = "super::images::without_pixels")]
     pub(crate) image: Arc<ColorImage>,
     /// The time from the snapshot to the finished picture in memory.
     pub(crate) time: Duration,
@@ -118,8 +120,12 @@ impl ViewportRenderer {
         let mut plan = planned(wanted, Reduction::NONE);
         let mut changes = self.renderer.damage(&plan);
         let share = share(&changes);
-        let reduction =
-            self.quality.choose(wanted.moving, share, applicable(wanted), wanted.budget);
+        let reduction = self.quality.choose(
+            wanted.options.moving,
+            share,
+            applicable(wanted),
+            wanted.options.budget,
+        );
         if reduction != Reduction::NONE && !changes.is_nothing() {
             plan = planned(wanted, reduction);
             changes = self.renderer.damage(&plan);
@@ -129,7 +135,8 @@ impl ViewportRenderer {
         }
         // A newer request cancels this frame only if the frame is too slow; see `Attempt`.
         let expected = self.quality.expected(reduction, share);
-        let attempt = Attempt { reduction, expected, second: self.gave_up, budget: wanted.budget };
+        let attempt =
+            Attempt { reduction, expected, second: self.gave_up, budget: wanted.options.budget };
         let clock = self.clock;
         let wanted = || match asked() {
             Asked::This => true,
@@ -167,7 +174,7 @@ impl ViewportRenderer {
     /// Shows the picture as it was before refinement, if it is refined further than requested.
     fn unrefined(&mut self, wanted: &Snapshot, changes: Damage) -> Option<Drawn> {
         let refined = self.refined?;
-        if wanted.refined.is_some_and(|most| most.count() >= refined.count()) {
+        if wanted.options.refined.is_some_and(|most| most.count() >= refined.count()) {
             return None;
         }
         self.refined = None;
@@ -182,14 +189,14 @@ impl ViewportRenderer {
         snapshot: &Snapshot,
         wanted: &(dyn Fn() -> bool + Sync),
     ) -> Finer {
-        if snapshot.moving || self.gave_up || self.shown != Some(Reduction::NONE) {
+        if snapshot.options.moving || self.gave_up || self.shown != Some(Reduction::NONE) {
             return Finer::Done;
         }
         // Measurements come first: they decide the quality of the next drag.
         let applicable = applicable(snapshot);
         let begun = (self.clock)();
-        let measured = self.quality.unmeasured(applicable, snapshot.budget);
-        if let Some(reduction) = measured.filter(|_| snapshot.coarse) {
+        let measured = self.quality.unmeasured(applicable, snapshot.options.budget);
+        if let Some(reduction) = measured.filter(|_| snapshot.options.coarse) {
             if self.finer.redraw(&planned(snapshot, reduction), wanted).is_err() {
                 return Finer::Disturbed;
             }
@@ -204,7 +211,7 @@ impl ViewportRenderer {
             return self.dial.step(snapshot, wanted);
         };
         let settings = marraztu_core::accuracy::Settings { samples, ..snapshot.settings };
-        let shot = Shot::new(&snapshot.scene, &snapshot.view, &settings, snapshot.size);
+        let shot = Shot::new(&snapshot.scene, &snapshot.view, &settings, snapshot.options.size);
         let Ok(changes) = self.finer.redraw(&plan_frame(&shot), wanted) else {
             return Finer::Disturbed;
         };
@@ -217,14 +224,14 @@ impl ViewportRenderer {
     /// Explains the effects of the last finished picture; `None` if that is not requested or has
     /// not changed.
     pub(crate) fn explain(&mut self, wanted: &Snapshot) -> Option<Arc<Explained>> {
-        if !wanted.explain {
+        if !wanted.options.explain {
             self.explained = None;
             return None;
         }
         if self.gave_up {
             return None;
         }
-        let (settings, size) = self.shown?.applied(wanted.settings, wanted.size);
+        let (settings, size) = self.shown?.applied(wanted.settings, wanted.options.size);
         let of = Shot::new(&wanted.scene, &wanted.view, &settings, size);
         let explained = cost::explain_with(&mut self.renderer, &of);
         if self.explained.as_deref() == Some(&explained) {
@@ -252,7 +259,7 @@ impl ViewportRenderer {
 }
 
 fn planned(wanted: &Snapshot, reduction: Reduction) -> FramePlan {
-    let (settings, size) = reduction.applied(wanted.settings, wanted.size);
+    let (settings, size) = reduction.applied(wanted.settings, wanted.options.size);
     plan_frame(&Shot::new(&wanted.scene, &wanted.view, &settings, size))
 }
 
@@ -299,6 +306,7 @@ mod tests {
     use super::super::reduction::Shrink;
     use super::*;
     use crate::app::drawing::border::Run;
+    use crate::app::drawing::snapshot::DrawOptions;
     use crate::app::state::Statistics;
     use marraztu_core::accuracy::Settings;
     use marraztu_core::base::color::Color;
@@ -310,19 +318,14 @@ mod tests {
         let budget = Duration::from_millis(33);
         let (settings, moving, explain, outlined) = (Settings::default(), false, false, Vec::new());
         let (coarse, refined, dial) = (true, None, None);
-        Snapshot {
-            scene,
-            view,
-            settings,
-            size,
-            moving,
-            coarse,
-            budget,
-            refined,
-            dial,
-            explain,
-            outlined,
-        }
+        let options =
+            DrawOptions { size, moving, coarse, budget, refined, dial, explain, outlined };
+        Snapshot { scene, view, settings, options }
+    }
+
+    fn moving(mut snapshot: Snapshot) -> Snapshot {
+        snapshot.options.moving = true;
+        snapshot
     }
 
     /// Changes the background colour of a snapshot, which requires a full redraw.
@@ -359,7 +362,8 @@ mod tests {
         let mut statistics = Statistics::default();
         let first = renderer.draw(&wanted, &this).unwrap();
         statistics.note(&first, 1);
-        let finer = Snapshot { refined: Some(Samples::Four), ..wanted.clone() };
+        let mut finer = wanted.clone();
+        finer.options.refined = Some(Samples::Four);
         assert!(matches!(renderer.refine(&finer, &|| true), Finer::Refined(_)));
         // Withdrawing the refinement shows the earlier picture again and takes no time.
         let again = renderer.draw(&wanted, &this).unwrap();
@@ -374,7 +378,7 @@ mod tests {
     #[test]
     fn a_border_runs_round_all_pixels_of_an_item_and_no_others() {
         let wanted = snapshot(Size::new(160, 120));
-        let (size, item) = (wanted.size, ItemId::Object(wanted.view.object.unwrap()));
+        let (size, item) = (wanted.options.size, ItemId::Object(wanted.view.object.unwrap()));
         let mut renderer = ViewportRenderer::new(Instant::now);
         renderer.draw(&wanted, &this).unwrap();
         let places = || (0..size.height).flat_map(|y| (0..size.width).map(move |x| (x, y)));
@@ -405,7 +409,7 @@ mod tests {
         assert!(renderer.draw(&wanted, &this).is_some());
         wanted.view.subject = marraztu_core::scene::Subject::Light;
         assert!(renderer.draw(&wanted, &this).is_none());
-        wanted.moving = true;
+        wanted.options.moving = true;
         assert!(renderer.draw(&wanted, &this).is_none());
         wanted.view.back_faces = true;
         assert!(renderer.draw(&wanted, &this).is_some());
@@ -418,7 +422,7 @@ mod tests {
         let first = renderer.draw(&still, &this).unwrap();
         assert_eq!((first.reduction, first.image.size), (Reduction::NONE, [161, 120]));
         for i in 0..11 {
-            let moving = Snapshot { moving: true, ..recolored(&still, i) };
+            let moving = moving(recolored(&still, i));
             let drawn = renderer.draw(&moving, &this).unwrap();
             // Every frame takes 40 ms: each reduction is tried twice, and none keeps the budget.
             let half = "light per vertex, half size";
@@ -447,7 +451,7 @@ mod tests {
             own.fold([0, 0, 0], |[n, x, y], at| [n + 1, x + at[0], y + at[1]])
         };
         let [count, x, y] = places(&mut renderer);
-        let mut moving = Snapshot { moving: true, ..still.clone() };
+        let mut moving = moving(still.clone());
         let mut drawn = None;
         for gray in 0..3 {
             moving = recolored(&moving, gray);

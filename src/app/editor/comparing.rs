@@ -7,49 +7,13 @@
 use egui::Context;
 
 use super::App;
-use super::jobs::{Answers, Job};
+use super::jobs::{Answers, Elsewhere, Job};
 use crate::app::state::State;
 use crate::app::state::laboratory::{Compare, Judged};
 use crate::app::tasks::{Outcome, Task};
 use crate::app::viewport::comparison::{Compared, Drawing, draw};
 use marraztu_core::scene::View;
 use marraztu_io as io;
-
-/// A comparison by another instance.
-#[derive(Debug, Default)]
-pub(crate) struct Comparing {
-    /// The job, until it is taken.
-    job: Option<Job>,
-    /// Receives the pictures.
-    answers: Option<Answers>,
-}
-
-impl Comparing {
-    /// Returns the next job for another instance.
-    pub(crate) fn take_job(&mut self) -> Option<Vec<u8>> {
-        self.job.take().map(|job| job.written())
-    }
-
-    /// Returns whether another instance draws a comparison.
-    pub(crate) const fn is_elsewhere(&self) -> bool {
-        self.answers.is_some()
-    }
-
-    /// Takes the end of the job of another instance.
-    pub(crate) fn end_elsewhere(&mut self, end: &[u8]) {
-        if let Some(answers) = self.answers.take() {
-            answers.end(end);
-        }
-    }
-
-    /// Ends the job as cancelled.
-    fn cancel(&mut self) {
-        self.job = None;
-        if let Some(answers) = self.answers.take() {
-            answers.cancel();
-        }
-    }
-}
 
 impl App {
     /// Shows finished pictures, and starts new ones if the comparison is out of date.
@@ -88,10 +52,7 @@ impl App {
             && let Some(job) = Job::compare(&of)
         {
             let (task, sender) = Task::promised(label);
-            self.comparing = Comparing {
-                job: Some(job),
-                answers: Some(Answers::Compared(sender, Box::new(theirs))),
-            };
+            self.comparing = Elsewhere::new(job, Answers::Compared(sender, Box::new(theirs)));
             comparison.drawing = Some(Drawing { of, task });
             return;
         }

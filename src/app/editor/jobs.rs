@@ -190,6 +190,46 @@ pub(super) enum Answers {
     Compared(Sender<Option<Box<Pair>>>, Box<Compared>),
 }
 
+/// A job that another instance does.
+#[derive(Debug, Default)]
+pub(crate) struct Elsewhere {
+    /// The job, until it is taken.
+    job: Option<Job>,
+    /// Receives the result.
+    answers: Option<Answers>,
+}
+
+impl Elsewhere {
+    pub(super) const fn new(job: Job, answers: Answers) -> Self {
+        Self { job: Some(job), answers: Some(answers) }
+    }
+
+    /// Returns the job, if it was not taken yet.
+    pub(crate) fn take_job(&mut self) -> Option<Vec<u8>> {
+        self.job.take().map(|job| job.written())
+    }
+
+    /// Returns whether the result is awaited.
+    pub(crate) const fn is_awaited(&self) -> bool {
+        self.answers.is_some()
+    }
+
+    /// Takes the end of the job.
+    pub(crate) fn end(&mut self, end: &[u8]) {
+        if let Some(answers) = self.answers.take() {
+            answers.end(end);
+        }
+    }
+
+    /// Ends the job as cancelled.
+    pub(super) fn cancel(&mut self) {
+        self.job = None;
+        if let Some(answers) = self.answers.take() {
+            answers.cancel();
+        }
+    }
+}
+
 /// Reads the progress of a job: the finished fraction, and the findings up to now.
 pub(super) fn so_far(told: &str) -> Option<(f64, Option<Findings>)> {
     let SoFar(fraction, findings) = serde_json::from_str(told).ok()?;

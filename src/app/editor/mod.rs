@@ -39,7 +39,7 @@ use crate::app::documents::dialogs::Dialogs;
 use crate::app::documents::loading::{Loading, Queued};
 use crate::app::documents::wanted::After;
 use crate::app::drawing::motion::{Happening, Motion};
-use crate::app::drawing::snapshot::Snapshot;
+use crate::app::drawing::snapshot::{DrawOptions, Snapshot};
 use crate::app::drawing::worker::Worker;
 use crate::app::fonts;
 use crate::app::input::keyboard::{Keyboard, Press};
@@ -51,8 +51,8 @@ use crate::app::viewport::comparison::Comparison;
 use crate::app::viewport::{Purpose, Viewport};
 use crate::app::widgets::number::take_bad_text;
 use crate::app::widgets::tooltips;
-use comparing::Comparing;
 use explaining::Explaining;
+use jobs::Elsewhere;
 use keeping::Keeping;
 use laboratory::Work;
 use making::Making;
@@ -76,7 +76,7 @@ pub struct App {
     /// Files being made.
     pub(crate) making: Making,
     /// The comparison by another instance.
-    pub(crate) comparing: Comparing,
+    pub(crate) comparing: Elsewhere,
     /// Files waiting to be read.
     pub(crate) queued: VecDeque<Queued>,
     /// The scenes that are read after this frame, for a host that has to provide their files.
@@ -129,7 +129,7 @@ impl App {
             loading: Vec::new(),
             searches: Vec::new(),
             making: Making::default(),
-            comparing: Comparing::default(),
+            comparing: Elsewhere::default(),
             queued: VecDeque::new(),
             opening: Vec::new(),
             models_from: None,
@@ -380,25 +380,19 @@ impl App {
     fn draw(&mut self, ctx: &Context) {
         let (Some(worker), Some(size)) = (&mut self.worker, self.viewport.size()) else { return };
         let State { scene, view, settings, .. } = &self.state;
-        let (scene, view, settings) = (scene.clone(), view.clone(), *settings);
-        let explain = self.state.panels.has(Panel::Plan);
-        let outlined = self.state.outlined();
         let coarse = self.state.coarse_while_moving;
-        let budget = Duration::from_millis(self.state.drawing.budget_ms.into());
-        let refined = self.state.refined_to();
-        let mut wanted = Snapshot {
-            scene,
-            view,
-            settings,
+        let options = DrawOptions {
             size,
             moving: false,
             coarse,
-            budget,
-            refined,
+            budget: Duration::from_millis(self.state.drawing.budget_ms.into()),
+            refined: self.state.refined_to(),
             dial: self.state.wanted_dial(),
-            explain,
-            outlined,
+            explain: self.state.panels.has(Panel::Plan),
+            outlined: self.state.outlined(),
         };
+        let (scene, view, settings) = (scene.clone(), view.clone(), *settings);
+        let mut wanted = Snapshot { scene, view, settings, options };
         // Input interrupts the refinement, even if the picture does not change.
         let (now, held) = ctx.input(|input| (input.time, input.pointer.any_down()));
         if held || ctx.input(|input| !input.events.is_empty()) {
@@ -409,7 +403,7 @@ impl App {
         let drawing = worker.is_drawing() && !self.state.is_animated();
         let happening = Happening { changed, held, drawing };
         let moving = self.motion.notice(now, happening);
-        wanted.moving = moving && coarse;
+        wanted.options.moving = moving && coarse;
         if let Some(rest) = self.motion.rest(now) {
             ctx.request_repaint_after(Duration::from_secs_f64(rest));
         }

@@ -138,7 +138,7 @@ impl CanvasShell {
     /// pictures are drawn elsewhere.
     pub fn job(&mut self, kind: JobKind) -> Option<Vec<u8>> {
         match kind {
-            JobKind::Measure => self.app.lab.take_job(),
+            JobKind::Measure => self.app.lab.elsewhere.take_job(),
             JobKind::Make => self.app.making.take_job(),
             JobKind::Compare => self.app.comparing.take_job(),
         }
@@ -148,9 +148,9 @@ impl CanvasShell {
     #[must_use]
     pub const fn awaits(&self, kind: JobKind) -> bool {
         match kind {
-            JobKind::Measure => self.app.lab.measures_elsewhere(),
+            JobKind::Measure => self.app.lab.elsewhere.is_awaited(),
             JobKind::Make => self.app.making.is_elsewhere(),
-            JobKind::Compare => self.app.comparing.is_elsewhere(),
+            JobKind::Compare => self.app.comparing.is_awaited(),
         }
     }
 
@@ -167,9 +167,9 @@ impl CanvasShell {
     /// Takes the end of a job of a kind. Anything else means that the job has failed.
     pub fn done(&mut self, kind: JobKind, end: &[u8]) {
         match kind {
-            JobKind::Measure => self.app.lab.end_elsewhere(end),
+            JobKind::Measure => self.app.lab.elsewhere.end(end),
             JobKind::Make => self.app.making.end_elsewhere(end),
-            JobKind::Compare => self.app.comparing.end_elsewhere(end),
+            JobKind::Compare => self.app.comparing.end(end),
         }
         self.due.store(0, Ordering::Relaxed);
     }

@@ -192,8 +192,7 @@ impl<P: Copy + Send + 'static> Worker<P> {
 
     /// Returns whether the worker is busy or has requests.
     pub(crate) fn is_drawing(&self) -> bool {
-        let desk = self.shared.lock();
-        desk.busy || desk.has_work()
+        self.shared.lock().is_answering()
     }
 
     /// Returns how long the requested picture has been in progress, if it is not finished.
@@ -208,28 +207,22 @@ impl<P: Copy + Send + 'static> Worker<P> {
 
     /// Requests the item at a pixel of the last picture.
     pub(crate) fn pick(&self, pick: Pick<P>) {
-        let mut desk = self.shared.lock();
-        desk.picks.push_back(pick);
-        self.shared.disturbed.store(true, Ordering::Relaxed);
-        drop(desk);
-        self.shared.changed.notify_all();
+        self.ask(|desk| desk.picks.push_back(pick));
     }
 
     /// Requests the border of an item in the last picture.
     pub(crate) fn border(&self, item: ItemId) {
-        let mut desk = self.shared.lock();
-        desk.border = Some(item);
-        self.shared.disturbed.store(true, Ordering::Relaxed);
-        drop(desk);
-        self.shared.changed.notify_all();
+        self.ask(|desk| desk.border = Some(item));
     }
 
     /// Requests a window of the ideal of the last picture.
     pub(crate) fn ideal(&self, window: PixelBox) {
-        let mut desk = self.shared.lock();
-        desk.ideal = Some(window);
+        self.ask(|desk| desk.ideal = Some(window));
+    }
+
+    fn ask(&self, request: impl FnOnce(&mut Desk<P>)) {
+        request(&mut self.shared.lock());
         self.shared.disturbed.store(true, Ordering::Relaxed);
-        drop(desk);
         self.shared.changed.notify_all();
     }
 
@@ -243,24 +236,22 @@ impl<P: Copy + Send + 'static> Worker<P> {
         if let Place::Here(here) = &self.place {
             here.borrow_mut().work(&self.shared);
         }
-        let mut desk = self.shared.lock();
-        std::mem::replace(&mut desk.news, News::none())
+        std::mem::take(&mut self.shared.lock().news)
     }
 
     /// Waits until all requests are answered.
     pub(crate) fn wait(&self) {
-        let mut desk = self.shared.lock();
-        while desk.busy || desk.has_work() {
-            desk = self.shared.changed.wait(desk).unwrap_or_else(PoisonError::into_inner);
-        }
+        self.wait_while(Desk::is_answering);
     }
 
     /// Waits until all requests are answered and nothing is left to refine.
     pub(crate) fn wait_until_refined(&self) {
-        let mut desk = self.shared.lock();
-        while desk.busy || desk.has_work() || !desk.settled {
-            desk = self.shared.changed.wait(desk).unwrap_or_else(PoisonError::into_inner);
-        }
+        self.wait_while(|desk| desk.is_answering() || !desk.settled);
+    }
+
+    fn wait_while(&self, busy: impl Fn(&Desk<P>) -> bool) {
+        // A poisoned lock means that the thread has ended.
+        drop(self.shared.changed.wait_while(self.shared.lock(), |desk| busy(desk)));
     }
 }
 
@@ -278,19 +269,11 @@ impl<P> Drop for Worker<P> {
     }
 }
 
-impl<P> News<P> {
-    const fn none() -> Self {
-        Self {
-            border: None,
-            drawn: None,
-            refined: None,
-            outline: None,
-            explained: None,
-            dial: None,
-            ideal: None,
-            picked: Vec::new(),
-            failed: false,
-        }
+impl<P> Default for News<P> {
+    fn default() -> Self {
+        let (border, drawn, refined, outline) = (None, None, None, None);
+        let (explained, dial, ideal, picked, failed) = (None, None, None, Vec::new(), false);
+        Self { border, drawn, refined, outline, explained, dial, ideal, picked, failed }
     }
 }
 
@@ -301,13 +284,17 @@ impl<P> Desk<P> {
             || self.border.is_some()
             || self.ideal.is_some()
     }
+
+    fn is_answering(&self) -> bool {
+        self.busy || self.has_work()
+    }
 }
 
 impl<P> Shared<P> {
     fn new(is_awaited: fn() -> bool) -> Arc<Self> {
         let (wanted, picks, border, ideal) = (None, VecDeque::new(), None, None);
         let (busy, begun, closed) = (false, None, false);
-        let (settled, quiet_at, news) = (true, Instant::now(), News::none());
+        let (settled, quiet_at, news) = (true, Instant::now(), News::default());
         let desk =
             Desk { wanted, picks, border, ideal, news, busy, begun, closed, settled, quiet_at };
         Arc::new(Self {
@@ -328,6 +315,12 @@ impl<P> Shared<P> {
     fn disturb(&self, desk: &mut Desk<P>) {
         desk.quiet_at = Instant::now() + QUIET;
         self.disturbed.store(true, Ordering::Relaxed);
+    }
+
+    /// Returns whether work that nobody waits for goes on; asked between tiles.
+    fn goes_on_until(&self, end: &AtomicBool) -> bool {
+        let is_over = [end, &self.over].iter().any(|flag| flag.load(Ordering::Relaxed));
+        !is_over && !(self.is_awaited)()
     }
 
     /// Returns the time until there is work, or `None` if there is none before a request.
@@ -468,11 +461,7 @@ impl Painter {
             wake();
         }
         if let (Some(window), Some(last), None) = (ideal, &*last, &wanted) {
-            let goes_on = || {
-                !shared.newer.load(Ordering::Relaxed)
-                    && !shared.over.load(Ordering::Relaxed)
-                    && !(shared.is_awaited)()
-            };
+            let goes_on = || shared.goes_on_until(&shared.newer);
             let drawn = catch_unwind(AssertUnwindSafe(|| painter.ideal(last, window, &goes_on)));
             if let Ok(Some(picture)) = drawn {
                 shared.lock().news.ideal = Some((window, picture));
@@ -516,15 +505,15 @@ fn draw<P: Copy + Send>(
         wake();
         return false;
     };
-    let another = wanted.outlined != *outlined && !painter.was_given_up();
+    let another = wanted.options.outlined != *outlined && !painter.was_given_up();
     if drawn.is_some() || another {
         // The outline is taken from this very picture, so it never lags behind.
-        let (first, others) = wanted.outlined.split_first().unzip();
+        let (first, others) = wanted.options.outlined.split_first().unzip();
         let own = first.and_then(|item| painter.border(*item));
         let others = others.filter(|others| !others.is_empty());
         let others = others.and_then(|all| painter.border_of(*first?, all));
         let outline = [own, others];
-        outlined.clone_from(&wanted.outlined);
+        outlined.clone_from(&wanted.options.outlined);
         let mut desk = shared.lock();
         if drawn.is_some() {
             (desk.news.drawn, desk.news.refined) = (drawn, None);
@@ -543,11 +532,7 @@ fn refine<P: Copy + Send>(
     painter: &mut ViewportRenderer,
     last: Option<&Snapshot>,
 ) {
-    let go_on = || {
-        !shared.disturbed.load(Ordering::Relaxed)
-            && !shared.over.load(Ordering::Relaxed)
-            && !(shared.is_awaited)()
-    };
+    let go_on = || shared.goes_on_until(&shared.disturbed);
     let step = || last.map_or(Finer::Done, |last| painter.refine(last, &go_on));
     match catch_unwind(AssertUnwindSafe(step)) {
         Ok(Finer::Refined(drawn)) => {

@@ -2,10 +2,9 @@
 
 use std::time::Duration;
 
-use super::message::{DrawnHead, Reply, Request, Wanted, read, write};
+use super::message::{Reply, Request, Wanted, read, write};
 use super::{News, Pick, Worker};
 use crate::app::drawing::snapshot::Snapshot;
-use crate::app::drawing::viewport_renderer::Drawn;
 use marraztu_core::scene::Scene;
 use marraztu_io::{Known, scene_of_message};
 
@@ -65,19 +64,7 @@ impl DrawingServer {
         let before = self.scene.as_ref();
         let known = before.filter(|_| !self.is_stale).map(Known::of).unwrap_or_default();
         let (scene, view, settings) = scene_of_message(&wanted.scene, before, &known).ok()?;
-        Some(Snapshot {
-            scene,
-            view,
-            settings,
-            size: wanted.size,
-            moving: wanted.moving,
-            coarse: wanted.coarse,
-            budget: wanted.budget,
-            refined: wanted.refined,
-            dial: wanted.dial,
-            explain: wanted.explain,
-            outlined: wanted.outlined,
-        })
+        Some(Snapshot { scene, view, settings, options: wanted.options })
     }
 
     /// Notes that files have changed: the models of the next objects are loaded again.
@@ -103,8 +90,8 @@ impl DrawingServer {
             let reply = Reply {
                 done,
                 border,
-                drawn: drawn.as_ref().map(DrawnHead::of),
-                refined: refined.as_ref().map(DrawnHead::of),
+                drawn: drawn.clone(),
+                refined: refined.clone(),
                 outline,
                 explained: explained.as_deref().cloned(),
                 dial: dial.map(|dial| dial.figures),
@@ -120,20 +107,5 @@ impl DrawingServer {
     #[must_use]
     pub fn rest(&self) -> Option<Duration> {
         if self.is_asked { Some(Duration::ZERO) } else { self.worker.shared.rest() }
-    }
-}
-
-impl DrawnHead {
-    fn of(drawn: &Drawn) -> Self {
-        let Drawn { image, time, triangles, reduction, lost, refined, changes } = drawn;
-        Self {
-            size: image.size,
-            time: *time,
-            triangles: *triangles,
-            reduction: *reduction,
-            lost: *lost,
-            refined: *refined,
-            changes: changes.clone(),
-        }
     }
 }
