@@ -54,6 +54,11 @@ impl Splitter {
         }
     }
 
+    /// Returns its name in preferences.
+    fn word(self) -> String {
+        format!("{self:?}").to_lowercase()
+    }
+
     /// Returns whether it is dragged to the left and right.
     #[must_use]
     pub const fn is_upright(self) -> bool {
@@ -64,16 +69,9 @@ impl Splitter {
 /// The sizes that the user wishes; `None` is the size that suits the window.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Layout {
-    /// The width of the left column, in points.
-    pub left: Option<f32>,
-    /// The width of the properties, in points.
-    pub right: Option<f32>,
-    /// The share of the left column that the switches take, from 0 to 1.
-    pub switches: Option<f32>,
-    /// The laboratory's share of the height.
-    pub laboratory: Option<f32>,
-    /// The plan's share of the height above the laboratory.
-    pub plan: Option<f32>,
+    /// The wish of each splitter: a width in points, or a height as a share from 0 to 1. That of the
+    /// plan is a share of the height above the laboratory.
+    pub(crate) wishes: [Option<f32>; Splitter::ALL.len()],
     /// The panel that is unfolded in a narrow window.
     pub unfolded: Option<Side>,
 }
@@ -101,32 +99,19 @@ impl Layout {
     /// Returns the sizes that the user has chosen, by the names of the splitters.
     #[must_use]
     pub fn shares(&self) -> BTreeMap<String, f32> {
-        let chosen = |splitter: Splitter| {
-            let share = match splitter {
-                Splitter::Left => self.left,
-                Splitter::Right => self.right,
-                Splitter::Switches => self.switches,
-                Splitter::Laboratory => self.laboratory,
-                Splitter::Plan => self.plan,
-            };
-            Some((format!("{splitter:?}").to_lowercase(), share?))
-        };
+        let chosen = |splitter: Splitter| Some((splitter.word(), self.wish(splitter)?));
         Splitter::ALL.into_iter().filter_map(chosen).collect()
     }
 
     /// Creates the layout with these sizes.
     #[must_use]
     pub fn of_shares(shares: &BTreeMap<String, f32>) -> Self {
-        let share =
-            |splitter: Splitter| shares.get(&format!("{splitter:?}").to_lowercase()).copied();
-        Self {
-            left: share(Splitter::Left),
-            right: share(Splitter::Right),
-            switches: share(Splitter::Switches),
-            laboratory: share(Splitter::Laboratory),
-            plan: share(Splitter::Plan),
-            unfolded: None,
-        }
+        let wishes = Splitter::ALL.map(|splitter| shares.get(&splitter.word()).copied());
+        Self { wishes, unfolded: None }
+    }
+
+    const fn wish(&self, splitter: Splitter) -> Option<f32> {
+        self.wishes[splitter as usize]
     }
 }
 
@@ -144,7 +129,8 @@ impl Layout {
         let mut rest = area;
         // The laboratory spans the width of the window, so it is cut off first.
         let laboratory = panels.has(Panel::Laboratory).then(|| {
-            let height = share(area.height(), self.laboratory.unwrap_or(0.5), 150.0, 150.0);
+            let height =
+                share(area.height(), self.wish(Splitter::Laboratory).unwrap_or(0.5), 150.0, 150.0);
             let (above, place) = cut(rest, area.bottom() - height);
             rest = above;
             place
@@ -157,7 +143,8 @@ impl Layout {
         }
         // The plan lies under the picture, between the columns.
         places.plan = panels.has(Panel::Plan).then(|| {
-            let height = share(rest.height(), self.plan.unwrap_or(0.34), 90.0, LEAST);
+            let height =
+                share(rest.height(), self.wish(Splitter::Plan).unwrap_or(0.34), 90.0, LEAST);
             let (above, place) = cut(rest, rest.bottom() - height);
             rest = above;
             place
@@ -172,8 +159,8 @@ impl Layout {
         rest.min.x += STRIP;
         let Some(side) = self.unfolded else { return };
         let wish = match side {
-            Side::Outline | Side::Switches => self.left,
-            Side::Properties => self.right,
+            Side::Outline | Side::Switches => self.wish(Splitter::Left),
+            Side::Properties => self.wish(Splitter::Right),
         };
         let width = share(rest.width(), wish.unwrap_or(250.0) / rest.width(), 220.0, 40.0);
         let place = Some(rest.with_max_x(rest.left() + width));
@@ -189,12 +176,12 @@ impl Layout {
     fn columns(&self, width: f32, rest: &mut Rect, panels: OpenPanels, places: &mut Places) {
         let (left, right) = if width >= WIDE { (228.0, 280.0) } else { (212.0, 256.0) };
         if panels.has(Panel::Outline) || panels.has(Panel::View) {
-            let left = self.left.unwrap_or(left).clamp(180.0, width * 0.28).round();
+            let left = self.wish(Splitter::Left).unwrap_or(left).clamp(180.0, width * 0.28).round();
             let column = rest.with_max_x(rest.left() + left);
             rest.min.x += left;
             match (panels.has(Panel::Outline), panels.has(Panel::View)) {
                 (true, true) => {
-                    let part = self.switches.unwrap_or(0.56);
+                    let part = self.wish(Splitter::Switches).unwrap_or(0.56);
                     let height = share(column.height(), part, LEAST, LEAST);
                     let (above, below) = cut(column, column.bottom() - height);
                     (places.outline, places.switches) = (Some(above), Some(below));
@@ -204,7 +191,8 @@ impl Layout {
             }
         }
         if panels.has(Panel::Properties) {
-            let right = self.right.unwrap_or(right).clamp(232.0, width * 0.34).round();
+            let right =
+                self.wish(Splitter::Right).unwrap_or(right).clamp(232.0, width * 0.34).round();
             places.properties = Some(rest.with_min_x(rest.right() - right));
             rest.max.x -= right;
         }
@@ -216,33 +204,22 @@ impl Layout {
         let part =
             |whole: Rect| ((whole.bottom() - to.y) / whole.height().max(1.0)).clamp(0.05, 0.95);
         let joined = |a: Option<Rect>, b: Option<Rect>| Some(a?.union(b?));
-        match splitter {
-            Splitter::Left => self.left = Some(to.x - area.left() - now.strip_width()),
-            Splitter::Right if now.strip.is_some() => {
-                self.right = Some(to.x - area.left() - now.strip_width());
-            }
-            Splitter::Right => self.right = Some(area.right() - to.x),
-            Splitter::Switches => {
-                self.switches = joined(now.outline, now.switches).map(part).or(self.switches);
-            }
-            Splitter::Laboratory => self.laboratory = Some(part(area)),
-            Splitter::Plan => {
-                self.plan = joined(now.plan, Some(now.picture)).map(part).or(self.plan);
-            }
-        }
+        let wish = match splitter {
+            Splitter::Left => Some(to.x - area.left() - now.strip_width()),
+            Splitter::Right if now.strip.is_some() => Some(to.x - area.left() - now.strip_width()),
+            Splitter::Right => Some(area.right() - to.x),
+            Splitter::Switches => joined(now.outline, now.switches).map(part),
+            Splitter::Laboratory => Some(part(area)),
+            Splitter::Plan => joined(now.plan, Some(now.picture)).map(part),
+        };
+        self.wishes[splitter as usize] = wish.or(self.wish(splitter));
         self
     }
 
     /// Returns the layout with a splitter at its default place.
     #[must_use]
     pub const fn reset(mut self, splitter: Splitter) -> Self {
-        match splitter {
-            Splitter::Left => self.left = None,
-            Splitter::Right => self.right = None,
-            Splitter::Switches => self.switches = None,
-            Splitter::Laboratory => self.laboratory = None,
-            Splitter::Plan => self.plan = None,
-        }
+        self.wishes[splitter as usize] = None;
         self
     }
 }
@@ -355,14 +332,8 @@ mod tests {
     }
 
     fn wished(width: f32, part: f32) -> Layout {
-        Layout {
-            left: Some(width),
-            right: Some(width),
-            switches: Some(part),
-            laboratory: Some(part),
-            plan: Some(part),
-            unfolded: Some(Side::Properties),
-        }
+        let wishes = [width, width, part, part, part].map(Some);
+        Layout { wishes, unfolded: Some(Side::Properties) }
     }
 
     #[test]
@@ -400,7 +371,8 @@ mod tests {
 
     #[test]
     fn a_window_that_was_small_has_its_panels_back() {
-        let layout = Layout { left: Some(300.0), laboratory: Some(0.6), ..Layout::default() };
+        let wishes = [("left".to_owned(), 300.0), ("laboratory".to_owned(), 0.6)];
+        let layout = Layout::of_shares(&wishes.into());
         let panels = OpenPanels::DEFAULT.with(Panel::Laboratory, true);
         let large = Rect::from_min_size(pos2(0.0, 0.0), vec2(1920.0, 1030.0));
         let before = layout.divide(large, panels);
