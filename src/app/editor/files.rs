@@ -11,6 +11,7 @@ use super::App;
 use super::turning::usual_up;
 use super::unseen::out_of_sight;
 use crate::app::documents::answer::Answer;
+use crate::app::documents::dialogs::Dialog;
 use crate::app::documents::loading::{Fetched, FetchedModel, Loading, Queued, Wish, is_scene};
 use crate::app::documents::material_dialog::{
     MaterialChoices, MaterialDialog, details, opened, own_or_silver, summary,
@@ -64,50 +65,25 @@ impl App {
     }
 
     fn take_files(&mut self, ctx: &Context, wanted: Wanted, paths: Vec<PathBuf>) {
-        let mut paths = paths.into_iter();
-        match wanted {
-            Wanted::Model => self.load_files(ctx, paths.collect()),
-            Wanted::Dropped => self.open_files(ctx, paths.collect()),
-            Wanted::Texture(id) => {
-                if let Some(path) = paths.next() {
-                    self.load_texture(ctx, id, path);
+        let first = paths.first().cloned();
+        match (wanted, first) {
+            (Wanted::Model, _) => self.load_files(ctx, paths),
+            (Wanted::Dropped, _) => self.open_files(ctx, paths),
+            (_, None) => {}
+            (Wanted::Texture(id), Some(path)) => self.load_texture(ctx, id, path),
+            (Wanted::TextureOfModel, Some(path)) => {
+                if let Some(dialog) = self.dialogs.material() {
+                    dialog.set_texture(path);
                 }
             }
-            Wanted::TextureOfModel => {
-                if let Some(path) = paths.next() {
-                    self.dialogs.set_texture(path);
-                }
+            (Wanted::PictureTo, Some(path)) => self.save_picture(ctx, path),
+            (Wanted::PictureWithOptionsTo | Wanted::TurntableTo, Some(path)) => {
+                self.make_picture(ctx, path);
             }
-            Wanted::PictureTo => {
-                if let Some(path) = paths.next() {
-                    self.save_picture(ctx, path);
-                }
-            }
-            Wanted::PictureWithOptionsTo | Wanted::TurntableTo => {
-                if let Some(path) = paths.next() {
-                    self.make_picture(ctx, path);
-                }
-            }
-            Wanted::ExportTo => {
-                if let Some(path) = paths.next() {
-                    self.export_scene(ctx, path);
-                }
-            }
-            Wanted::Scene => {
-                if let Some(path) = paths.next() {
-                    self.open_scene(ctx, path);
-                }
-            }
-            Wanted::SceneTo(after) => {
-                if let Some(path) = paths.next() {
-                    self.save_to(ctx, path, after);
-                }
-            }
-            Wanted::Missing(old) => {
-                if let Some(path) = paths.next() {
-                    self.found_missing(ctx, old, path);
-                }
-            }
+            (Wanted::ExportTo, Some(path)) => self.export_scene(ctx, path),
+            (Wanted::Scene, Some(path)) => self.open_scene(ctx, path),
+            (Wanted::SceneTo(after), Some(path)) => self.save_to(ctx, path, after),
+            (Wanted::Missing(old), Some(path)) => self.found_missing(ctx, old, path),
         }
     }
 
@@ -193,7 +169,7 @@ impl App {
         // Files are handled in the order of the requests, whatever order they finish in.
         while let Some(loading) = self.loading.first() {
             // Only one material dialog is open at a time, so further models wait.
-            if loading.asks && self.dialogs.asks_material() {
+            if loading.asks && self.dialogs.material().is_some() {
                 return;
             }
             let fetched = match loading.task.outcome() {
@@ -230,7 +206,8 @@ impl App {
                         }
                     }
                     (Ok((loaded, _)), None) => {
-                        self.dialogs.ask_material(MaterialDialog::of_model(path, loaded));
+                        let dialog = MaterialDialog::of_model(path, loaded);
+                        self.dialogs.show(Dialog::Material(Box::new(dialog)));
                     }
                 }
             }
@@ -261,7 +238,8 @@ impl App {
         match error {
             LoadError::Cancelled => self.state.tell(Some("Loading was cancelled".to_owned())),
             LoadError::File { .. } | LoadError::Line { .. } => {
-                self.dialogs.tell_not_loaded(format!("{error}."));
+                let title = "The file was not loaded";
+                self.dialogs.show(Dialog::Fault(title, format!("{error}.")));
             }
         }
     }
@@ -392,46 +370,27 @@ impl App {
 
     /// Replaces the scene as [`Self::replace`] does; returns the old state.
     pub(crate) fn swap(&mut self, state: State) -> State {
-        // Preferences of the window and lists of files belong to the window, not to the scene.
-        let State { panels, theme, drawing, layout, overlays, greeting, .. } = self.state;
-        let State { gizmo, helpers, watches, up, zoom, narrow, picture_only, .. } = self.state;
-        // The palette closes itself after the request that replaces the scene.
-        let palette = self.state.palette;
-        let statistics = self.state.statistics.clone();
-        let dial =
-            DialState { shown: self.state.dial.shown, own: state.dial.own, ..DialState::default() };
-        let recent = std::mem::take(&mut self.state.recent);
-        let recoverable = std::mem::take(&mut self.state.recoverable);
-        let discarded = std::mem::take(&mut self.state.discarded);
-        let generation = self.state.generation + 1;
         // Background work for the old scene is of no use for the new one.
         self.end_measuring();
         self.comparison.forget();
         self.first_steps = None;
-        let new = State {
-            panels,
-            theme,
-            drawing,
-            layout,
-            overlays,
-            palette,
-            dial,
-            gizmo,
-            helpers,
-            watches,
-            up,
-            zoom,
-            narrow,
-            picture_only,
-            greeting,
-            statistics,
-            recent,
-            recoverable,
-            discarded,
-            generation,
-            ..state
-        };
-        std::mem::replace(&mut self.state, new)
+        let mut old = std::mem::replace(&mut self.state, state);
+        // Preferences of the window and lists of files belong to the window, not to the scene. The
+        // palette closes itself after the request that replaces the scene.
+        let new = &mut self.state;
+        (new.panels, new.theme, new.drawing, new.layout) =
+            (old.panels, old.theme, old.drawing, old.layout);
+        (new.overlays, new.palette, new.gizmo, new.helpers) =
+            (old.overlays, old.palette, old.gizmo, old.helpers);
+        (new.watches, new.up, new.zoom, new.narrow) = (old.watches, old.up, old.zoom, old.narrow);
+        (new.picture_only, new.greeting) = (old.picture_only, old.greeting);
+        new.dial = DialState { shown: old.dial.shown, own: new.dial.own, ..DialState::default() };
+        new.statistics = old.statistics.clone();
+        new.recent = std::mem::take(&mut old.recent);
+        new.recoverable = std::mem::take(&mut old.recoverable);
+        new.discarded = std::mem::take(&mut old.discarded);
+        new.generation = old.generation + 1;
+        old
     }
 }
 

@@ -11,6 +11,7 @@ use egui::Context;
 
 use super::App;
 use crate::app::actions::MissingRequest;
+use crate::app::documents::dialogs::Dialog;
 use crate::app::documents::loading::{Fetched, Found};
 use crate::app::documents::wanted::Wanted;
 use crate::app::state::{MissingFiles, Notice};
@@ -43,13 +44,13 @@ impl App {
             Some(file) => {
                 let near = self.state.path.as_deref().and_then(Path::parent);
                 let folder = [file.parent(), near].into_iter().flatten().find(|it| it.is_dir());
-                self.dialogs.begin_in(folder.map(Path::to_owned));
+                self.dialogs.folders.open_in(folder.map(Path::to_owned));
                 let name = file_name(&file);
                 self.ask_file(ctx, Wanted::Missing(file), &name);
             }
             None => {
                 let all = missing.into_iter().map(Path::to_owned).collect();
-                self.dialogs.list_missing(all);
+                self.dialogs.show(Dialog::Missing(all));
             }
         }
     }

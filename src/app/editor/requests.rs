@@ -12,6 +12,7 @@ use super::App;
 use crate::app::actions::{
     Action, Chord, FileIntent, Intent, KeyRequest, LabRequest, Request, resolve,
 };
+use crate::app::documents::dialogs::Dialog;
 use crate::app::documents::material_dialog::MaterialDialog;
 use crate::app::documents::picture_dialog::{PictureChoices, Purpose};
 use crate::app::documents::wanted::{After, Wanted};
@@ -143,7 +144,8 @@ impl App {
             // Notices. An earlier request of the frame may have removed some: indices are checked.
             Request::Details(at) => {
                 if let Some(notice) = state.notices.get(at) {
-                    self.dialogs.tell_details(notice.text.clone(), notice.details.clone());
+                    let (text, details) = (notice.text.clone(), notice.details.clone());
+                    self.dialogs.show(Dialog::Details(text, details));
                 }
             }
             Request::PutAway(at) => {
@@ -225,7 +227,9 @@ impl App {
             }
             Ok(Intent::File(intent)) => self.file(ctx, intent),
             Ok(Intent::Clipboard(intent)) => self.clipboard(ctx, intent, &label),
-            Ok(Intent::AskCamera) => self.dialogs.ask_material(MaterialDialog::of_camera()),
+            Ok(Intent::AskCamera) => {
+                self.dialogs.show(Dialog::Material(Box::new(MaterialDialog::of_camera())));
+            }
             Ok(Intent::Measure) => self.measure(ctx),
             Ok(Intent::ChooseTexture(id)) => self.ask_file(ctx, Wanted::Texture(id), ""),
             Ok(Intent::WhyUnseen(id)) => self.why_unseen(ctx, id),
@@ -293,7 +297,7 @@ impl App {
             FileIntent::Recover => self.unless_unsaved(ctx, After::Recover(0)),
             FileIntent::RecoverDiscarded => match &self.state.discarded[..] {
                 [_] => self.unless_unsaved(ctx, After::RecoverDiscarded(0)),
-                all => self.dialogs.list_discarded(all.to_vec()),
+                all => self.dialogs.show(Dialog::Discarded(all.to_vec())),
             },
             FileIntent::FindMissing => self.find_missing(ctx, None),
             FileIntent::Reload => self.reload_models(ctx, None),
@@ -313,7 +317,10 @@ impl App {
     /// recent files.
     fn note_folders(&mut self, wanted: &Wanted) {
         let own = match wanted {
-            Wanted::TextureOfModel => self.dialogs.model_file().map(Path::to_owned),
+            Wanted::TextureOfModel => {
+                let loaded = self.dialogs.material().and_then(|dialog| dialog.loaded.as_ref());
+                loaded.map(|(path, _)| path.clone())
+            }
             Wanted::Texture(id) => {
                 let object = self.state.scene.objects.get(*id);
                 object.and_then(|object| object.model.source.clone())

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use egui::Context;
 
 use super::App;
+use crate::app::documents::dialogs::Dialog;
 use crate::app::documents::loading::{Fetched, Opening};
 use crate::app::documents::material_dialog::{details, short};
 use crate::app::documents::wanted::{After, ChangedFile, Wanted};
@@ -44,7 +45,7 @@ impl App {
             None => path.exists(),
         };
         if is_own && has_changed {
-            return self.dialogs.ask_changed(path, after);
+            return self.dialogs.show(Dialog::Changed(path, after));
         }
         self.write_scene(ctx, path, after);
     }

@@ -130,7 +130,7 @@ impl Browser {
             let end = rect.left() + theme::GAP + label.size().x;
             put_text(ui, rect.with_min_x(rect.left() + theme::GAP), label, color);
             if by {
-                let icon = if self.look.reversed { Icon::Up } else { Icon::Down };
+                let icon = if self.look.reversed { Icon::UP } else { Icon::DOWN };
                 let place =
                     Rect::from_center_size(pos2(end + 9.0, rect.center().y), vec2(12.0, 12.0));
                 icon.paint(ui.painter(), place, 10.0, color);
