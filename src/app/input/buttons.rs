@@ -45,7 +45,7 @@ impl Action {
         let shown = ui.add_enabled_ui(enabled, |ui| button.atom_ui(ui)).inner;
         if self.is_on(state) == Some(true) {
             for (_, rect) in shown.custom_rects().filter(|(id, _)| *id == tick) {
-                Icon::Tick.paint(ui.painter(), rect, 10.0, ui.visuals().text_color());
+                Icon::TICK.paint(ui.painter(), rect, 10.0, ui.visuals().text_color());
             }
         }
         shown.response.widget_info(|| match self.is_on(state) {

@@ -128,7 +128,7 @@ fn head_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     if state.loupe {
         ui.painter().rect_filled(square, 3.0, ui.visuals().selection.bg_fill);
     }
-    icon_at(ui, square, &response, Icon::Loupe, "Loupe", true);
+    icon_at(ui, square, &response, Icon::LOUPE, "Loupe", true);
     let hint = "Loupe: shows the pixels under the pointer next to the ideal. Or hold the key k.";
     if response.on_hover_text(hint).clicked() {
         requests.push(Request::Do(Action::ToggleLoupe));

@@ -149,7 +149,7 @@ fn search_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let line = Stroke::new(1.0, if hovered { weak } else { theme::line(visuals) });
     ui.painter().rect(rect.shrink(0.5), 4.0, field, line, StrokeKind::Inside);
     let icon = Rect::from_min_size(rect.min, vec2(theme::ROW, rect.height()));
-    Icon::Search.paint(ui.painter(), icon, 12.0, weak);
+    Icon::SEARCH.paint(ui.painter(), icon, 12.0, weak);
     let key = first_key(ui, action).unwrap_or_default();
     let end = pos2(rect.right() - theme::GAP, rect.center().y);
     let right = controls::key_cap(ui, end, &key, true) - theme::GAP;

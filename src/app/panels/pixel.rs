@@ -102,10 +102,10 @@ fn buttons_ui(
             requests.push(Request::Do(crate::app::actions::Action::ExplainPixel));
         }
         for (icon, name, by) in [
-            (Icon::Left, "The pixel to the left", [-1, 0]),
-            (Icon::Right, "The pixel to the right", [1, 0]),
-            (Icon::Up, "The pixel above", [0, -1]),
-            (Icon::Down, "The pixel below", [0, 1]),
+            (Icon::LEFT, "The pixel to the left", [-1, 0]),
+            (Icon::RIGHT, "The pixel to the right", [1, 0]),
+            (Icon::UP, "The pixel above", [0, -1]),
+            (Icon::DOWN, "The pixel below", [0, 1]),
         ] {
             let next = |at: usize, by: isize| at.checked_add_signed(by);
             let response = icon_button(ui, icon, name, true).on_hover_text(name);

@@ -257,7 +257,7 @@ impl Row<'_> {
         let middle = rect.center().y;
         let mark = columns.name.left() + 12.0;
         if let Some(is_open) = self.chevron {
-            let icon = if is_open { Icon::Down } else { Icon::Right };
+            let icon = if is_open { Icon::DOWN } else { Icon::RIGHT };
             let at =
                 Rect::from_center_size(pos2(columns.name.left() + 4.0, middle), vec2(8.0, 8.0));
             icon.paint(ui.painter(), at, 8.0, color);

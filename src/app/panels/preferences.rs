@@ -12,7 +12,7 @@ use crate::app::input::keyboard::Keyboard;
 use crate::app::panels::{OpenPanels, Panel};
 use crate::app::state::State;
 use crate::app::theme;
-use crate::app::widgets::controls::{self, Choice, Switch, icon_button};
+use crate::app::widgets::controls::{self, Switch, choose, icon_button};
 use crate::app::widgets::icons::Icon;
 use marraztu_core::accuracy::Samples;
 use marraztu_core::scene::UpAxis;
@@ -41,7 +41,8 @@ const ROWS: &[Row] = &[
         hint: "Whether the window is light or dark.",
         ui: |ui, it, _| {
             let all = [("System", Theme::System), ("Light", Theme::Light), ("Dark", Theme::Dark)];
-            choose(ui, ("Theme", "Light, dark, or like the system"), &all, &mut it.theme);
+            let all = all.map(|(label, to)| (label, to, "Light, dark, or like the system"));
+            it.theme = choose(ui, "Theme", it.theme, &all).unwrap_or(it.theme);
         },
         copy: |from, to| to.theme = from.theme,
     },
@@ -123,11 +124,9 @@ const ROWS: &[Row] = &[
         label: "Up axis of models",
         hint: "The up axis of models that do not state one.",
         ui: |ui, it, _| {
-            let words = UpAxis::ALL.map(|up| up.word().to_uppercase());
-            let named = UpAxis::ALL.into_iter().zip(&words);
-            let all: Vec<(&str, UpAxis)> = named.map(|(up, word)| (word.as_str(), up)).collect();
             let hint = "The axis of the file that points up";
-            choose(ui, ("Up axis", hint), &all, &mut it.up);
+            let all = UpAxis::ALL.map(|up| (up.word().to_uppercase(), up, hint));
+            it.up = choose(ui, "Up axis", it.up, &all).unwrap_or(it.up);
         },
         copy: |from, to| to.up = from.up,
     },
@@ -183,12 +182,9 @@ const ROWS: &[Row] = &[
         label: "Samples when refined",
         hint: "The samples per pixel that the picture is refined to.",
         ui: |ui, it, _| {
-            let counts = Samples::ALL.map(|samples| samples.count().to_string());
-            let named = Samples::ALL.into_iter().zip(&counts);
-            let all: Vec<(&str, Samples)> =
-                named.map(|(samples, count)| (count.as_str(), samples)).collect();
             let hint = "More samples smooth edges, and take longer";
-            choose(ui, ("Samples when refined", hint), &all, &mut it.refined);
+            let all = Samples::ALL.map(|samples| (samples.count().to_string(), samples, hint));
+            it.refined = choose(ui, "Samples when refined", it.refined, &all).unwrap_or(it.refined);
         },
         copy: |from, to| to.refined = from.refined,
     },
@@ -206,19 +202,6 @@ const ROWS: &[Row] = &[
 
 fn switch(ui: &mut Ui, label: &str, on: &mut bool) {
     *on ^= Switch::new(label, *on).ui(ui).clicked();
-}
-
-fn choose<T: Copy + PartialEq>(
-    ui: &mut Ui,
-    (of, hint): (&str, &str),
-    all: &[(&str, T)],
-    now: &mut T,
-) {
-    let choices: Vec<Choice<'_>> =
-        all.iter().map(|(label, it)| Choice::new(of, label, it == now, hint)).collect();
-    if let Some(clicked) = controls::choices(ui, &choices) {
-        *now = all[clicked].1;
-    }
 }
 
 /// Returns the current preferences, with the last known size of the window.
@@ -319,7 +302,7 @@ impl Row {
             });
             let name = format!("Reset: {}", self.label);
             let is_changed = reset != *now;
-            let button = icon_button(ui, Icon::Undo, &name, is_changed).on_hover_text(&name);
+            let button = icon_button(ui, Icon::UNDO, &name, is_changed).on_hover_text(&name);
             if is_changed && button.clicked() {
                 *now = reset;
             }

@@ -65,9 +65,9 @@ pub(crate) fn strip_ui(ui: &mut Ui, rect: Rect, state: &State, requests: &mut Ve
     let inner = rect.shrink2(vec2((rect.width() - theme::ROW) / 2.0, theme::GAP));
     let mut child = ui.new_child(UiBuilder::new().id_salt("strip").max_rect(inner));
     for (side, icon, panel) in [
-        (Side::Outline, Icon::List, Panel::Outline),
-        (Side::Switches, Icon::Switches, Panel::View),
-        (Side::Properties, Icon::Properties, Panel::Properties),
+        (Side::Outline, Icon::LIST, Panel::Outline),
+        (Side::Switches, Icon::SWITCHES, Panel::View),
+        (Side::Properties, Icon::PROPERTIES, Panel::Properties),
     ] {
         if state.layout.unfolded == Some(side) {
             let row = vec2(theme::ROW, theme::ROW);

@@ -36,8 +36,8 @@ pub(super) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let here = history.position();
     let done = (0..here).rev().map(|at| (at, at));
     let undone = (here..history.steps().len()).map(|at| (at, at + 1));
-    button_ui(ui, state, requests, (Action::Undo, Icon::Undo), done);
-    button_ui(ui, state, requests, (Action::Redo, Icon::Redo), undone);
+    button_ui(ui, state, requests, (Action::Undo, Icon::UNDO), done);
+    button_ui(ui, state, requests, (Action::Redo, Icon::REDO), undone);
 }
 
 /// Shows a button with its steps, the nearest first.

@@ -7,7 +7,9 @@ use crate::app::input::buttons::{action_choice, action_switch};
 use crate::app::state::{DrawingChoices, State};
 use crate::app::theme;
 use crate::app::widgets::color_picker::swatch;
-use crate::app::widgets::controls::{self, Choice, choices, choices_in_rows, row, section};
+use crate::app::widgets::controls::{
+    self, Choice, choices, choices_in_rows, choose_in_rows, row, section,
+};
 use crate::app::widgets::number::Number;
 use crate::app::widgets::regions;
 use marraztu_core::accuracy::{ACCURACY_PRESETS, AXES, AccuracyPreset, Axis, Samples};
@@ -255,14 +257,10 @@ fn normals_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 /// Shows the accuracy presets and every axis of the table.
 fn settings_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let now = state.settings;
-    let hints: Vec<String> = ACCURACY_PRESETS.iter().map(AccuracyPreset::in_words).collect();
-    let presets: Vec<Choice<'_>> = ACCURACY_PRESETS
-        .iter()
-        .zip(&hints)
-        .map(|(preset, hint)| Choice::new("Accuracy", preset.label, preset.of(&now) == now, hint))
-        .collect();
-    if let Some(clicked) = row(ui, "Accuracy", |ui| choices_in_rows(ui, &presets)) {
-        requests.push(Request::Settings(ACCURACY_PRESETS[clicked].of(&now)));
+    let preset = |preset: &AccuracyPreset| (preset.label, preset.of(&now), preset.in_words());
+    let all: Vec<_> = ACCURACY_PRESETS.iter().map(preset).collect();
+    if let Some(to) = row(ui, "Accuracy", |ui| choose_in_rows(ui, "Accuracy", now, &all)) {
+        requests.push(Request::Settings(to));
     }
     for (i, axis) in AXES.iter().filter(|axis| !is_of_light(axis)).enumerate() {
         // A second region splits the long list for the keyboard.
@@ -276,34 +274,23 @@ fn settings_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 /// Shows the preferences for drawing: refinement, and the time budget while moving.
 fn drawing_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let now = state.drawing;
-    let label = |samples: &Samples| format!("{} samples", samples.count());
-    let labels: Vec<String> = Samples::ALL[1..].iter().map(label).collect();
     let hint = "The samples per pixel in the window while nothing moves. Files and the laboratory \
         keep the setting above.";
-    let off = Choice::new("Refined to", "Off", !now.refines, hint);
-    let on = Samples::ALL[1..].iter().zip(&labels).map(|(samples, label)| {
-        Choice::new("Refined to", label, now.refines && now.refined == *samples, hint)
-    });
-    let all: Vec<Choice<'_>> = std::iter::once(off).chain(on).collect();
-    match row(ui, "When still", |ui| choices_in_rows(ui, &all)) {
-        Some(0) => requests.push(Request::Drawing(DrawingChoices { refines: false, ..now })),
-        Some(clicked) => {
-            let refined = Samples::ALL[clicked];
-            requests.push(Request::Drawing(DrawingChoices { refines: true, refined, ..now }));
-        }
-        None => {}
+    let refined = Samples::ALL[1..]
+        .iter()
+        .map(|samples| (format!("{} samples", samples.count()), Some(*samples), hint));
+    let all: Vec<_> = std::iter::once(("Off".to_owned(), None, hint)).chain(refined).collect();
+    let to = now.refines.then_some(now.refined);
+    if let Some(to) = row(ui, "When still", |ui| choose_in_rows(ui, "Refined to", to, &all)) {
+        let (refines, refined) = (to.is_some(), to.unwrap_or(now.refined));
+        requests.push(Request::Drawing(DrawingChoices { refines, refined, ..now }));
     }
     let hint = "The time limit for a picture while something moves. If a picture takes longer, \
         the window draws the most exact quality that was within the limit when it was measured on \
         this scene.";
-    let labels = BUDGETS.map(|ms| format!("{ms} ms"));
-    let all: Vec<Choice<'_>> = BUDGETS
-        .iter()
-        .zip(&labels)
-        .map(|(ms, label)| Choice::new("Time while moving", label, now.budget_ms == *ms, hint))
-        .collect();
-    if let Some(clicked) = row(ui, "Moving", |ui| choices_in_rows(ui, &all)) {
-        let budget_ms = BUDGETS[clicked];
+    let all = BUDGETS.map(|ms| (format!("{ms} ms"), ms, hint));
+    let of = "Time while moving";
+    if let Some(budget_ms) = row(ui, "Moving", |ui| choose_in_rows(ui, of, now.budget_ms, &all)) {
         requests.push(Request::Drawing(DrawingChoices { budget_ms, ..now }));
     }
 }

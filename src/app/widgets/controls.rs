@@ -48,7 +48,7 @@ pub(crate) fn section(ui: &mut Ui, title: &'static str, open: bool, add: impl Fn
     let line = Stroke::new(1.0, theme::line(visuals));
     ui.painter().hline(rect.x_range(), rect.top() + 0.5, line);
     let chevron = Rect::from_min_size(rect.min, vec2(10.0, rect.height()));
-    let icon = if is_open { Icon::Down } else { Icon::Right };
+    let icon = if is_open { Icon::DOWN } else { Icon::RIGHT };
     icon.paint(ui.painter(), chevron, 8.0, color);
     let left = rect.with_min_x(rect.left() + 16.0);
     put_text(ui, left, text(ui, title, TextStyle::Body, left.width()), color);
@@ -151,7 +151,7 @@ fn tick_box(ui: &Ui, rect: Rect, on: bool, enabled: bool) {
     let painter = ui.painter();
     if on {
         painter.rect_filled(rect, 3.0, fade(visuals.selection.bg_fill));
-        Icon::Tick.paint(painter, rect, 10.0, fade(visuals.selection.stroke.color));
+        Icon::TICK.paint(painter, rect, 10.0, fade(visuals.selection.stroke.color));
     } else {
         painter.rect_filled(rect, 3.0, fade(visuals.extreme_bg_color));
     }
@@ -216,6 +216,37 @@ pub(crate) fn choices(ui: &mut Ui, choices: &[Choice<'_>]) -> Option<usize> {
 pub(crate) fn choices_in_rows(ui: &mut Ui, choices: &[Choice<'_>]) -> Option<usize> {
     let columns = columns(ui, choices);
     choices_in(ui, choices, columns)
+}
+
+/// Shows options with values and hints in one row. `of` names the group for screen readers, and
+/// `now` is the chosen value. Returns the value of an option that was clicked.
+pub(crate) fn choose<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    of: &str,
+    now: T,
+    all: &[(impl AsRef<str>, T, impl AsRef<str>)],
+) -> Option<T> {
+    choices(ui, &options(of, now, all)).map(|clicked| all[clicked].1)
+}
+
+/// Shows options as [`choose`] does, in as many rows as their labels need.
+pub(crate) fn choose_in_rows<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    of: &str,
+    now: T,
+    all: &[(impl AsRef<str>, T, impl AsRef<str>)],
+) -> Option<T> {
+    choices_in_rows(ui, &options(of, now, all)).map(|clicked| all[clicked].1)
+}
+
+fn options<'a, T: PartialEq>(
+    of: &str,
+    now: T,
+    all: &'a [(impl AsRef<str>, T, impl AsRef<str>)],
+) -> Vec<Choice<'a>> {
+    all.iter()
+        .map(|(label, value, hint)| Choice::new(of, label.as_ref(), *value == now, hint.as_ref()))
+        .collect()
 }
 
 fn choices_in(ui: &mut Ui, choices: &[Choice<'_>], columns: usize) -> Option<usize> {

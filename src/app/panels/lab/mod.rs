@@ -13,7 +13,7 @@ use egui::{Id, Layout, Rect, ScrollArea, Ui, UiBuilder, vec2};
 use crate::app::actions::Request;
 use crate::app::state::State;
 use crate::app::theme;
-use crate::app::widgets::controls::{Choice, choices};
+use crate::app::widgets::controls::choose;
 use crate::app::widgets::regions;
 
 /// The width of the controls.
@@ -86,15 +86,16 @@ impl Part {
         }
     }
 
-    /// Returns the label and the hint.
-    const fn texts(self) -> (&'static str, &'static str) {
-        match self {
+    /// Returns the part with its label and its hint.
+    const fn option(self) -> (&'static str, Self, &'static str) {
+        let (label, hint) = match self {
             Self::Options => ("Options", "Measurement, metrics and comparison"),
             Self::Results => ("Results", "The verdict, and time against error"),
             Self::Verdict => ("Verdict", "What every choice costs and gives here"),
             Self::Plot => ("Plot", "Time against error"),
             Self::Table => ("Table", "Every choice with its figures"),
-        }
+        };
+        (label, self, hint)
     }
 
     /// Returns the part of a panel with other parts that shows the same.
@@ -116,18 +117,10 @@ fn one_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     // Whoever measures wants to see the results.
     let wished = if is_running && !was_running { Part::Results } else { part };
     let mut part = wished.among(all);
-    let shown: Vec<Choice<'_>> = all
-        .iter()
-        .map(|other| {
-            let (label, hint) = other.texts();
-            Choice::new("Laboratory", label, *other == part, hint)
-        })
-        .collect();
     ui.horizontal(|ui| {
         ui.set_width(ui.available_width() - f32::from(theme::MARGIN));
-        if let Some(clicked) = choices(ui, &shown) {
-            part = all[clicked];
-        }
+        let shown: Vec<_> = all.iter().map(|other| other.option()).collect();
+        part = choose(ui, "Laboratory", part, &shown).unwrap_or(part);
     });
     ui.data_mut(|data| data.insert_temp(id, (part, is_running)));
     let rest = ui.available_rect_before_wrap();

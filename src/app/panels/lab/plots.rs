@@ -10,7 +10,7 @@ use egui_plot::{GridMark, Plot, PlotPoint, PlotTransform, Span};
 use crate::app::actions::{LabRequest, Request};
 use crate::app::state::State;
 use crate::app::theme;
-use crate::app::widgets::controls::{self, Choice, choices_in_rows};
+use crate::app::widgets::controls::{self, choose_in_rows};
 use crate::app::widgets::regions;
 use marraztu_lab::report::{Panel, PanelMark, Panels, Report, TextBox, brief, place};
 use marraztu_lab::sweep::{Against, Row};
@@ -119,16 +119,11 @@ fn suite_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     }
     let scenes = state.lab.suite.iter().map(|report| report.scene.as_str()).enumerate();
     let scenes = scenes.map(|(i, name)| (Some(i), name.trim_start_matches("suite scene ")));
-    let all: Vec<_> = std::iter::once((None, "This scene")).chain(scenes).collect();
-    let chips: Vec<Choice<'_>> = all
-        .iter()
-        .map(|(place, name)| {
-            let chosen = state.lab.shown_suite == *place;
-            Choice::new("Measured", name, chosen, "Chooses the scene of these figures")
-        })
-        .collect();
-    if let Some(clicked) = choices_in_rows(ui, &chips) {
-        requests.push(Request::Lab(LabRequest::ShowSuite(all[clicked].0)));
+    let hint = "Chooses the scene of these figures";
+    let all = std::iter::once((None, "This scene")).chain(scenes);
+    let all: Vec<_> = all.map(|(place, name)| (name, place, hint)).collect();
+    if let Some(place) = choose_in_rows(ui, "Measured", state.lab.shown_suite, &all) {
+        requests.push(Request::Lab(LabRequest::ShowSuite(place)));
     }
 }
 

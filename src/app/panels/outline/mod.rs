@@ -20,7 +20,8 @@ use crate::app::widgets::controls::{self, icon_button};
 use crate::app::widgets::icons::Icon;
 use crate::app::widgets::regions;
 use marraztu_core::scene::{ItemId, ObjectId, Subject};
-use order::{place, reorder};
+pub(super) use order::place;
+use order::reorder;
 
 /// A line of the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -217,10 +218,10 @@ fn header_ui(
 /// Shows the button that adds an item to a list.
 fn add_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, subject: Subject) {
     match subject {
-        Subject::Object => action_icon(ui, state, requests, Icon::Plus, Action::Load),
-        Subject::Camera => action_icon(ui, state, requests, Icon::Plus, Action::AddCamera),
+        Subject::Object => action_icon(ui, state, requests, Icon::PLUS, Action::Load),
+        Subject::Camera => action_icon(ui, state, requests, Icon::PLUS, Action::AddCamera),
         Subject::Light => {
-            let response = icon_button(ui, Icon::Plus, "Add a light", true);
+            let response = icon_button(ui, Icon::PLUS, "Add a light", true);
             Popup::menu(&response).show(|ui| {
                 ui.set_min_width(160.0);
                 let attached = [Action::AddObjectSpot, Action::AddCameraSpot];
@@ -237,12 +238,12 @@ fn add_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, subject: Subj
 fn tools_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
-        move_ui(ui, state, requests, Icon::Up, "Move up the list");
-        move_ui(ui, state, requests, Icon::Down, "Move down the list");
+        move_ui(ui, state, requests, Icon::UP, "Move up the list");
+        move_ui(ui, state, requests, Icon::DOWN, "Move down the list");
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            action_icon(ui, state, requests, Icon::Bin, Action::Delete);
-            action_icon(ui, state, requests, Icon::Copy, Action::Duplicate);
-            action_icon(ui, state, requests, Icon::Pen, Action::Rename);
+            action_icon(ui, state, requests, Icon::BIN, Action::Delete);
+            action_icon(ui, state, requests, Icon::COPY, Action::Duplicate);
+            action_icon(ui, state, requests, Icon::PEN, Action::Rename);
         });
     });
 }
@@ -250,7 +251,7 @@ fn tools_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 fn move_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, icon: Icon, name: &str) {
     let place = state.selected().and_then(|id| Some((id, place(state, id)?)));
     let to = place.and_then(|(id, (at, count))| {
-        let to = if icon == Icon::Up { at.checked_sub(1)? } else { at + 1 };
+        let to = if icon == Icon::UP { at.checked_sub(1)? } else { at + 1 };
         (to < count).then_some((id, to))
     });
     let response = icon_button(ui, icon, name, to.is_some());

@@ -9,7 +9,7 @@ use marraztu_core::edit::{Gesture, items, selection};
 use marraztu_core::scene::ItemId;
 
 /// Returns the index of an item in its list, and the length of the list.
-pub(super) fn place(state: &State, id: ItemId) -> Option<(usize, usize)> {
+pub(crate) fn place(state: &State, id: ItemId) -> Option<(usize, usize)> {
     let scene = &state.scene;
     Some(match id {
         ItemId::Object(id) => (scene.objects.position(id)?, scene.objects.len()),

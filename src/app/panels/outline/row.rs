@@ -141,10 +141,10 @@ fn is_shown(scene: &Scene, item: ItemId) -> bool {
 fn shown_ui(ui: &Ui, state: &State, requests: &mut Vec<Request>, row: &Row, shown: bool) -> f32 {
     let Row { item, rect, is_stop, .. } = *row;
     let (icon, verb) = match (item, shown) {
-        (ItemId::Light(_), true) => (Icon::On, "Switch off"),
-        (ItemId::Light(_), false) => (Icon::Off, "Switch on"),
-        (_, true) => (Icon::Eye, "Hide"),
-        (_, false) => (Icon::EyeClosed, "Show"),
+        (ItemId::Light(_), true) => (Icon::ON, "Switch off"),
+        (ItemId::Light(_), false) => (Icon::OFF, "Switch on"),
+        (_, true) => (Icon::EYE, "Hide"),
+        (_, false) => (Icon::EYE_CLOSED, "Show"),
     };
     let label = format!("{verb} {}", state.name(item).unwrap_or_default());
     let rect = Rect::from_min_max(pos2(rect.right() - theme::ROW, rect.top()), rect.max);
@@ -204,7 +204,7 @@ fn lock_ui(
     let sense = regions::sense(Sense::click(), is_stop);
     let response = ui.interact(rect, ui.scope_id().with(("locked", item)), sense);
     if locked || hovered || response.hovered() || response.has_focus() {
-        let icon = if locked { Icon::Lock } else { Icon::LockOpen };
+        let icon = if locked { Icon::LOCK } else { Icon::LOCK_OPEN };
         icon_at(ui, rect, &response, icon, &label, true);
     } else {
         response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
@@ -342,7 +342,7 @@ fn fold_ui(ui: &Ui, state: &State, row: &Row, unfolded: bool, color: Color32) ->
     let response = ui.interact(rect, ui.scope_id().with(("parts", item)), sense);
     let label = format!("Parts of {}", object.name);
     response.widget_info(|| WidgetInfo::selected(Role::DisclosureTriangle, true, unfolded, &label));
-    let icon = if unfolded { Icon::Down } else { Icon::Right };
+    let icon = if unfolded { Icon::DOWN } else { Icon::RIGHT };
     icon.paint(ui.painter(), rect, 8.0, color);
     controls::focus_ring(ui, rect, &response);
     response.on_hover_text("Lists the parts of the model, to hide or show each").clicked()
@@ -362,14 +362,14 @@ pub(crate) fn part_ui(
     let Some(name) = usize::try_from(part).ok().and_then(|part| parts.get(part)) else { return };
     let name = if name.name.is_empty() { "(unnamed)" } else { &name.name };
     let shown = !object.hidden_parts.contains(&part);
-    let (icon, verb) = if shown { (Icon::Eye, "Hide") } else { (Icon::EyeClosed, "Show") };
+    let (icon, verb) = if shown { (Icon::EYE, "Hide") } else { (Icon::EYE_CLOSED, "Show") };
     let label = format!("{verb} part {name}");
     let button = Rect::from_min_max(pos2(rect.right() - theme::ROW, rect.top()), rect.max);
     let response = ui.interact(button, ui.scope_id().with(("part", id, part)), Sense::click());
     icon_at(ui, button, &response, icon, &label, true);
     let color = ground_color(ui, false, shown && object.visible);
     let mark = Rect::from_min_size(rect.min + vec2(INDENT + 16.0, 0.0), vec2(12.0, rect.height()));
-    Icon::Part.paint(ui.painter(), mark, 9.0, color);
+    Icon::PART.paint(ui.painter(), mark, 9.0, color);
     let text = Rect::from_x_y_ranges(mark.right() + 5.0..=button.left(), rect.y_range());
     controls::put_text(ui, text, controls::text(ui, name, TextStyle::Body, text.width()), color);
     if response.on_hover_text(&label).clicked() {
