@@ -11,7 +11,6 @@ use marraztu_core::scene::{CameraMode, Subject, Transformation};
 impl Action {
     /// Names the effect of the action, repeated `times` times in one gesture, for the history:
     /// "Move teapot 10 along x".
-    #[must_use]
     pub fn step_label(self, state: &State, times: u32) -> String {
         let name = &state.acted_on_name();
         let info = self.info();

@@ -125,6 +125,20 @@ pub enum Also {
     Add,
 }
 
+impl Request {
+    /// Requests a change of the scene, or reports why it is refused.
+    pub(crate) fn change(
+        label: impl Into<String>,
+        gesture: Gesture,
+        command: Result<Command, Refusal>,
+    ) -> Self {
+        match command {
+            Ok(command) => Self::Change { command, gesture, label: label.into() },
+            Err(refusal) => Self::Refuse(refusal.to_string()),
+        }
+    }
+}
+
 impl From<Action> for Request {
     fn from(action: Action) -> Self {
         Self::Do(action)
@@ -201,10 +215,7 @@ pub(crate) fn change(
     gesture: Gesture,
     command: Result<Command, Refusal>,
 ) {
-    requests.push(match command {
-        Ok(command) => Request::Change { command, gesture, label: label.into() },
-        Err(refusal) => Request::Refuse(refusal.to_string()),
-    });
+    requests.push(Request::change(label, gesture, command));
 }
 
 /// Requests a change of the view.

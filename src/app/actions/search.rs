@@ -47,7 +47,6 @@ const CLOSE: u32 = 18;
 
 impl Search {
     /// Creates a search for `query`.
-    #[must_use]
     pub fn new(query: &str) -> Self {
         let atom = |word: &str| {
             let (case, normalize) = (CaseMatching::Ignore, Normalization::Smart);
@@ -59,7 +58,6 @@ impl Search {
     }
 
     /// Returns whether the query is empty. An empty query matches everything.
-    #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.words.is_empty()
     }

@@ -27,14 +27,12 @@ const LIGHT_SWITCHES: [Action; 10] = [
 
 impl Action {
     /// Returns the slot of the light that the action switches.
-    #[must_use]
     pub fn slot(self) -> Option<u32> {
         let at = LIGHT_SWITCHES.iter().position(|action| *action == self)?;
         u32::try_from(at).ok()
     }
 
     /// Returns the preset of the dial that the action chooses.
-    #[must_use]
     pub fn preset(self) -> Option<&'static AccuracyPreset> {
         let place = Self::DIAL.iter().position(|action| *action == self)?;
         AccuracyPreset::dial().get(place)
@@ -45,7 +43,6 @@ impl Action {
         [Self::DialDraft, Self::DialDefault, Self::DialExact, Self::DialIdeal];
 
     /// Returns whether the action's switch is on; `None` if the action is not a switch.
-    #[must_use]
     pub fn is_on(self, state: &State) -> Option<bool> {
         let (scene, view) = (&state.scene, &state.view);
         if let Some(slot) = self.slot() {

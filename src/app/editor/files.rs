@@ -318,7 +318,6 @@ impl App {
     }
 
     /// Returns the picture that the viewport shows.
-    #[must_use]
     pub fn shown_picture(&self) -> Option<Picture> {
         self.viewport.image().and_then(|image| images::picture(image))
     }

@@ -121,7 +121,6 @@ pub struct App {
 
 impl App {
     /// Creates an editor of this scene.
-    #[must_use]
     pub fn new(scene: Scene, view: View) -> Self {
         Self {
             state: State::new(scene, view),
@@ -182,7 +181,6 @@ impl App {
     }
 
     /// Returns the scene being edited, and everything shown about it.
-    #[must_use]
     pub const fn state(&self) -> &State {
         &self.state
     }

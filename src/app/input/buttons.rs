@@ -12,7 +12,6 @@ use crate::app::widgets::icons::Icon;
 
 impl Action {
     /// Takes the key presses of this frame, in order.
-    #[must_use]
     pub fn pressed(ctx: &Context) -> Vec<Press> {
         Keyboard::take(ctx)
     }

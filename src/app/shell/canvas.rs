@@ -145,7 +145,6 @@ impl CanvasShell {
     }
 
     /// Returns whether the result of a job of a kind is awaited. If not, the host may stop it.
-    #[must_use]
     pub const fn awaits(&self, kind: JobKind) -> bool {
         match kind {
             JobKind::Measure => self.app.lab.elsewhere.is_awaited(),
@@ -214,26 +213,22 @@ impl CanvasShell {
     }
 
     /// Returns the zoom of the editor, which multiplies the scale.
-    #[must_use]
     pub fn zoom(&self) -> f32 {
         self.ctx.zoom_factor()
     }
 
     /// Returns the time until the next frame is due, or `None` if nothing will change by itself.
-    #[must_use]
     pub fn due(&self) -> Option<Duration> {
         let due = self.due.load(Ordering::Relaxed);
         (due != u64::MAX).then(|| Duration::from_millis(due))
     }
 
     /// Returns the pixels row by row: blue in the lowest byte, then green, red and a zero.
-    #[must_use]
     pub fn pixels(&self) -> &[u32] {
         &self.pixels
     }
 
     /// Returns the number of columns and rows.
-    #[must_use]
     pub const fn size(&self) -> [usize; 2] {
         self.size
     }

@@ -21,7 +21,6 @@ pub struct DialState {
 
 impl DialState {
     /// Returns the last figures.
-    #[must_use]
     pub fn figures(&self) -> &[Figures] {
         self.last.as_ref().map_or(&[], |last| &last.figures)
     }

@@ -59,7 +59,6 @@ pub struct Laboratory {
 
 impl Laboratory {
     /// Returns the report to show.
-    #[must_use]
     pub fn shown(&self) -> Option<&Report> {
         match self.shown_suite {
             Some(i) => self.suite.get(i),
@@ -79,7 +78,6 @@ impl Laboratory {
     }
 
     /// Returns whether the measured scene, view or size differs from the viewport's.
-    #[must_use]
     pub fn is_stale(&self, state: &State) -> bool {
         self.measured.as_ref().is_some_and(|(scene, view, size)| {
             let same_view = pictured(&state.view) == pictured(view);

@@ -102,7 +102,6 @@ pub struct ExplainedPixel {
 
 impl ExplainedPixel {
     /// Returns whether the picture is still the one that was explained.
-    #[must_use]
     pub fn is_of(&self, state: &State, size: Size) -> bool {
         let Self { scene, view, settings, .. } = self;
         self.size == size

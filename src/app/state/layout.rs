@@ -43,7 +43,6 @@ impl Splitter {
         [Self::Left, Self::Right, Self::Switches, Self::Laboratory, Self::Plan];
 
     /// Returns its name for screen readers.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Left => "Width of the left column",
@@ -60,7 +59,6 @@ impl Splitter {
     }
 
     /// Returns whether it is dragged to the left and right.
-    #[must_use]
     pub const fn is_upright(self) -> bool {
         matches!(self, Self::Left | Self::Right)
     }
@@ -97,14 +95,12 @@ pub struct Places {
 
 impl Layout {
     /// Returns the sizes that the user has chosen, by the names of the splitters.
-    #[must_use]
     pub fn shares(&self) -> BTreeMap<String, f32> {
         let chosen = |splitter: Splitter| Some((splitter.word(), self.wish(splitter)?));
         Splitter::ALL.into_iter().filter_map(chosen).collect()
     }
 
     /// Creates the layout with these sizes.
-    #[must_use]
     pub fn of_shares(shares: &BTreeMap<String, f32>) -> Self {
         let wishes = Splitter::ALL.map(|splitter| shares.get(&splitter.word()).copied());
         Self { wishes, unfolded: None }
@@ -124,7 +120,6 @@ fn share(of: f32, part: f32, least: f32, rest: f32) -> f32 {
 
 impl Layout {
     /// Divides `area` among the open panels and the picture.
-    #[must_use]
     pub fn divide(&self, area: Rect, panels: OpenPanels) -> Places {
         let mut rest = area;
         // The laboratory spans the width of the window, so it is cut off first.
@@ -231,7 +226,6 @@ fn cut(rect: Rect, y: f32) -> (Rect, Rect) {
 
 impl Places {
     /// Gives everything to the picture.
-    #[must_use]
     pub const fn of_picture(picture: Rect) -> Self {
         Self {
             strip: None,
@@ -249,7 +243,6 @@ impl Places {
     }
 
     /// Returns the place of a dock, if it holds a panel.
-    #[must_use]
     pub const fn of(&self, dock: Dock) -> Option<Rect> {
         match dock {
             Dock::Beside(Side::Outline) => self.outline,
@@ -270,7 +263,6 @@ impl Places {
     }
 
     /// Returns the area for grabbing a splitter, `thick` points wide, if the splitter is shown.
-    #[must_use]
     pub fn grip(&self, splitter: Splitter, thick: f32) -> Option<Rect> {
         let upright = |rect: Rect, x: f32| {
             Rect::from_center_size(pos2(x, rect.center().y), vec2(thick, rect.height()))

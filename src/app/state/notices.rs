@@ -39,7 +39,6 @@ pub struct Notice {
 impl Notice {
     /// Returns whether it waits for an answer. Any other notice moves to the status line after some
     /// seconds.
-    #[must_use]
     pub const fn needs_answer(&self) -> bool {
         match self.offer {
             Some(Offer::Frame(_) | Offer::TwoSides(_) | Offer::Show(_) | Offer::Opaque(_)) => true,
@@ -74,7 +73,6 @@ pub enum Offer {
 
 impl Offer {
     /// Returns the label of its button.
-    #[must_use]
     pub const fn label(self) -> &'static str {
         match self {
             Self::Frame(_) => "Frame",
@@ -86,7 +84,6 @@ impl Offer {
     }
 
     /// Returns the object that it is about.
-    #[must_use]
     pub const fn object(self) -> ObjectId {
         match self {
             Self::Frame(id)

@@ -13,9 +13,7 @@ mod marks;
 mod menu;
 mod mouse;
 mod over;
-mod overlay;
 mod picking;
-mod placeholders;
 
 use std::sync::Arc;
 
@@ -283,7 +281,7 @@ impl Viewport {
         if let (Some(border), Some((rect, _))) = (&self.border, self.place)
             && Some(border.item) == over
         {
-            overlay::border_ui(ui, rect, border, egui::Color32::WHITE);
+            over::border_ui(ui, rect, border, egui::Color32::WHITE);
         }
     }
 

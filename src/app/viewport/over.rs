@@ -4,8 +4,9 @@ use egui::{Pos2, Rect, Response, Ui};
 
 use super::gizmo::{Gizmo, Grab};
 use super::marks::Projection;
-use super::{Purpose, Viewport, axes, helpers, marks, overlay, picking, placeholders};
+use super::{Purpose, Viewport, axes, helpers, marks, picking};
 use crate::app::actions::{Also, Request};
+use crate::app::drawing::border::Border;
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::plate::plate_ui;
@@ -158,7 +159,7 @@ impl Viewport {
         let Some((rect, _)) = self.place else { return };
         helpers::grid_ui(ui, state, projection, self.image.as_deref());
         helpers::dimensions_ui(ui, state, projection);
-        placeholders::show(ui, state, projection);
+        helpers::placeholders_ui(ui, state, projection);
         // Overlays are drawn from back to front: grid, boxes, outlines, marks, gizmo, axes.
         let first = state.outlined().first().copied();
         let [own, others] = &self.outline;
@@ -167,7 +168,7 @@ impl Viewport {
         let borders = [(others, accent.gamma_multiply(0.6)), (own, accent)];
         for (border, color) in borders {
             if let Some(border) = border.as_ref().filter(|it| Some(it.item) == first) {
-                overlay::border_ui(ui, rect, border, color);
+                border_ui(ui, rect, border, color);
             }
         }
         marks::show(ui, state, projection, &over.marks);
@@ -193,4 +194,20 @@ impl Viewport {
             ui.ctx().set_cursor_icon(egui::CursorIcon::Crosshair);
         }
     }
+}
+
+/// Draws the border of an item with a dark outer line, visible on any background.
+#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^24 pixels a side")]
+pub(super) fn border_ui(ui: &Ui, rect: Rect, border: &Border, color: egui::Color32) {
+    let pixel = rect.size() / egui::vec2(border.size.width as f32, border.size.height as f32);
+    let mut mesh = egui::Mesh::default();
+    let colors = [egui::Color32::from_black_alpha(160), color];
+    for (runs, color) in [&border.outer, &border.inner].into_iter().zip(colors) {
+        for run in runs {
+            let min = rect.min + egui::vec2(run.x as f32, run.y as f32) * pixel;
+            let size = egui::vec2(run.length as f32, 1.0) * pixel;
+            mesh.add_colored_rect(Rect::from_min_size(min, size), color);
+        }
+    }
+    ui.painter().with_clip_rect(rect).add(mesh);
 }

@@ -239,7 +239,7 @@ pub(crate) fn choose_in_rows<T: Copy + PartialEq>(
     choices_in_rows(ui, &options(of, now, all)).map(|clicked| all[clicked].1)
 }
 
-fn options<'a, T: PartialEq>(
+fn options<'a, T: Copy + PartialEq>(
     of: &str,
     now: T,
     all: &'a [(impl AsRef<str>, T, impl AsRef<str>)],

@@ -27,7 +27,6 @@ pub struct DrawingServer {
 impl DrawingServer {
     /// Prepares to draw. `is_awaited` returns whether a request waits, which interrupts the
     /// refinement of a picture; it is asked between tiles.
-    #[must_use]
     pub fn new(is_awaited: fn() -> bool) -> Self {
         let worker = Worker::here(|| {}, is_awaited);
         Self { worker, scene: None, is_stale: false, is_asked: false, has_failed: false }
@@ -104,7 +103,6 @@ impl DrawingServer {
     }
 
     /// Returns the time until there is work, or `None` if there is none before the next request.
-    #[must_use]
     pub fn rest(&self) -> Option<Duration> {
         if self.is_asked { Some(Duration::ZERO) } else { self.worker.shared.rest() }
     }

@@ -3,7 +3,7 @@
 use egui::Ui;
 use glam::{DMat3, DVec3};
 
-use super::{material, missing, number_row, steps_ui};
+use super::{material, missing_ui, number_row, steps_ui};
 use crate::app::actions::{Request, change};
 use crate::app::panels::view_switches::frame_ui;
 use crate::app::state::State;
@@ -15,7 +15,7 @@ use marraztu_core::scene::{Camera, CameraId, Lens};
 
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId) {
     let Some(camera) = state.scene.cameras.get(id) else { return };
-    missing::show(ui, requests, camera.missing_file().into_iter());
+    missing_ui(ui, requests, camera.missing_file().into_iter());
     section(ui, "Transform", true, |ui| {
         pose_ui(ui, state, requests, id, camera);
         row(ui, "Moves", |ui| frame_ui(ui, state, requests));

@@ -4,19 +4,21 @@ mod camera;
 mod crease;
 mod light;
 mod material;
-mod missing;
 mod object;
 mod several;
 mod surface;
 
+use std::path::Path;
+
 use egui::{ScrollArea, Sense, TextStyle, Ui, vec2};
 
-use crate::app::actions::{Request, change_view};
+use crate::app::actions::{MissingRequest, Request, change_view};
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::controls::{self, Switch, row, section};
 use crate::app::widgets::icons::Icon;
 use crate::app::widgets::number::Number;
+use crate::app::widgets::text::file_name;
 use marraztu_core::edit;
 use marraztu_core::scene::{ItemId, Transformation};
 
@@ -123,4 +125,18 @@ fn number_row(
         let width = ui.available_width();
         number.ui(ui, width, value)
     })
+}
+
+/// Lists the missing files of an item, each with a button to find it.
+fn missing_ui<'a>(ui: &mut Ui, requests: &mut Vec<Request>, files: impl Iterator<Item = &'a Path>) {
+    for file in files {
+        ui.horizontal_wrapped(|ui| {
+            let text = format!("{} is missing", file_name(file));
+            let color = ui.visuals().warn_fg_color;
+            ui.colored_label(color, text).on_hover_text(file.display().to_string());
+            if ui.button("Find...").on_hover_text("Locates the missing file").clicked() {
+                requests.push(Request::Missing(MissingRequest::Find(Some(file.to_owned()))));
+            }
+        });
+    }
 }

@@ -3,7 +3,7 @@
 use egui::{Button, Id, Ui};
 use glam::{DMat3, DMat4, DVec3};
 
-use super::{material, missing, number_row, steps_ui};
+use super::{material, missing_ui, number_row, steps_ui};
 use crate::app::actions::{Request, change};
 use crate::app::state::State;
 use crate::app::widgets::color_picker::swatch;
@@ -28,7 +28,7 @@ pub(super) struct Shown<'a> {
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: ObjectId) {
     let Some(object) = state.scene.objects.get(id) else { return };
     let shown = Shown { state, id, object };
-    missing::show(ui, requests, object.missing_files());
+    missing_ui(ui, requests, object.missing_files());
     section(ui, "Transform", true, |ui| shown.placement_ui(ui, requests));
     section(ui, "Material", true, |ui| {
         if let Some((to, gesture)) = material::choice_ui(ui, &object.material, Some(object)) {

@@ -143,10 +143,7 @@ impl Grab {
         let command = several::each(scene, view, others, |scene, view| {
             gizmo::transform(scene, view, amount, GesturePhase::First)
         });
-        match command {
-            Ok(command) => Request::Change { command, gesture, label: self.label(amount) },
-            Err(why) => Request::Refuse(why.to_string()),
-        }
+        Request::change(self.label(amount), gesture, command)
     }
 
     /// Describes the amount for the history: "Move teapot 12 along x".
