@@ -10,7 +10,6 @@ use std::time::{Duration, SystemTime};
 use egui::Context;
 
 use super::App;
-use crate::app::documents::loading::{Fetched, Opening};
 use crate::app::panels::preferences;
 use crate::app::state::{Notice, State};
 use crate::app::widgets::text::file_name;
@@ -162,27 +161,18 @@ impl App {
 
     /// Reads the offered work at this index, to show it in place of the scene.
     pub(crate) fn recover(&mut self, ctx: &Context, at: usize) {
-        let Some(work) = self.keeping.as_ref().and_then(|keeping| keeping.offered.get(at)) else {
-            return;
-        };
-        let path = work.path().to_owned();
-        self.read_work(ctx, path);
+        let work = self.keeping.as_ref().and_then(|keeping| keeping.offered.get(at));
+        if let Some(path) = work.map(|work| work.path().to_owned()) {
+            self.read_scene(ctx, RECOVERING.to_owned(), path);
+        }
     }
 
     /// Reads the discarded work at this index, to show it in place of the scene.
     pub(crate) fn recover_discarded(&mut self, ctx: &Context, at: usize) {
         let work = self.keeping.as_ref().and_then(|keeping| keeping.discarded.get(at));
         if let Some(path) = work.map(|work| work.path().to_owned()) {
-            self.read_work(ctx, path);
+            self.read_scene(ctx, RECOVERING.to_owned(), path);
         }
-    }
-
-    fn read_work(&mut self, ctx: &Context, path: PathBuf) {
-        self.note_opening(&path);
-        self.begin_loading(ctx, "Recovering unsaved work".to_owned(), false, move |progress| {
-            let result = io::open(&path, progress);
-            Fetched::Scene(Box::new(Opening { path, result }))
-        });
     }
 
     /// Moves the offered work at this index to the discarded work.
@@ -294,6 +284,8 @@ impl Keeping {
         let _ = std::thread::Builder::new().name("preferences".to_owned()).spawn(write);
     }
 }
+
+const RECOVERING: &str = "Recovering unsaved work";
 
 const NOT_KEPT: &str = "Unsaved changes could not be kept for recovery: ";
 

@@ -44,6 +44,8 @@ use crate::app::drawing::worker::Worker;
 use crate::app::fonts;
 use crate::app::input::keyboard::{Keyboard, Press};
 use crate::app::panels::{Panel, arrange, notices, pixel};
+#[cfg(feature = "desktop")]
+use crate::app::shell::Parent;
 use crate::app::state::layout::NARROW;
 use crate::app::state::{Notice, State};
 use crate::app::theme;
@@ -478,7 +480,15 @@ impl App {
         }
     }
 
-    /// Ends after the window was asked to close and the editor did not object.
+    /// Shows a frame in a window that is the parent of system dialogs.
+    #[cfg(feature = "desktop")]
+    pub(crate) fn frame_within(&mut self, ui: &mut egui::Ui, parent: &dyn Parent) {
+        self.frame(ui);
+        self.dialogs.open_system(ui.ctx(), parent);
+    }
+
+    /// Ends after the window was asked to close and the editor did not object. Not called if the
+    /// window is lost with its display or by a fault.
     #[cfg(feature = "desktop")]
     pub(crate) fn end(&mut self) {
         self.end_keeping();

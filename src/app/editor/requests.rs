@@ -206,9 +206,7 @@ impl App {
             Ok(Intent::Navigate(command)) => self.navigate(command, gesture),
             Ok(Intent::View(view)) => self.show_view(*view),
             Ok(Intent::Select(selection)) => self.select(*selection, gesture),
-            Ok(Intent::Drawing(choices)) => self.state.drawing = choices,
-            Ok(Intent::Panels(panels)) => self.state.panels = panels,
-            Ok(Intent::Layout(layout)) => self.state.layout = layout,
+            Ok(Intent::Show(change)) => change(&mut self.state),
             Ok(Intent::Theme(theme)) => {
                 self.state.theme = theme;
                 ctx.set_theme(theme);
@@ -233,27 +231,10 @@ impl App {
             Ok(Intent::Measure) => self.measure(ctx),
             Ok(Intent::ChooseTexture(id)) => self.ask_file(ctx, Wanted::Texture(id), ""),
             Ok(Intent::WhyUnseen(id)) => self.why_unseen(ctx, id),
-            Ok(Intent::Palette) => self.state.palette ^= true,
             Ok(Intent::Zoom(zoom)) => ctx.set_zoom_factor(zoom),
-            Ok(Intent::Overlays) => self.state.overlays ^= true,
-            Ok(Intent::Watch) => self.state.watches ^= true,
             Ok(Intent::FitExposure) => self.fit_exposure(),
-            Ok(Intent::Helpers(helpers)) => self.state.helpers = helpers,
-            Ok(Intent::Gizmo) => self.state.gizmo ^= true,
-            Ok(Intent::Dial) => self.state.dial.shown ^= true,
             Ok(Intent::Loupe) => self.toggle_loupe(ctx),
-            Ok(Intent::Settings(settings)) => self.state.settings = settings,
-            Ok(Intent::Coarse) => self.state.coarse_while_moving ^= true,
             Ok(Intent::TypeAmount) => self.type_amount(ctx),
-            Ok(Intent::Others(others)) => self.state.several = others,
-            Ok(Intent::AimByClick) => {
-                self.state.aiming ^= true;
-                self.state.explaining = false;
-            }
-            Ok(Intent::Explain) => {
-                self.state.explaining ^= true;
-                self.state.aiming = false;
-            }
             Ok(Intent::ChangeKeyboardOwner(way)) => Keyboard::change_owner(ctx, way),
         }
     }

@@ -83,19 +83,19 @@ impl App {
 
     /// Opens a scene in place of this one. The caller has asked about unsaved changes.
     pub(crate) fn open_scene(&mut self, ctx: &Context, path: PathBuf) {
-        let label = format!("Opening {}", file_name(&path));
-        self.note_opening(&path);
+        self.read_scene(ctx, format!("Opening {}", file_name(&path)), path);
+    }
+
+    /// Reads a scene, to show it in place of this one.
+    pub(crate) fn read_scene(&mut self, ctx: &Context, label: String, path: PathBuf) {
+        // A host that has to provide the scene's files first is told.
+        if cfg!(target_family = "wasm") {
+            self.opening.push(path.clone());
+        }
         self.begin_loading(ctx, label, false, move |progress| {
             let result = io::open(&path, progress);
             Fetched::Scene(Box::new(Opening { path, result }))
         });
-    }
-
-    /// Notes a scene that will be read, for a host that has to provide its files first.
-    pub(crate) fn note_opening(&mut self, path: &Path) {
-        if cfg!(target_family = "wasm") {
-            self.opening.push(path.to_owned());
-        }
     }
 
     /// Shows an opened scene.

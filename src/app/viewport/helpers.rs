@@ -8,6 +8,7 @@ use egui::{Color32, ColorImage, Painter, Pos2, Rect, Stroke, TextStyle, Ui, vec2
 use glam::DVec3;
 
 use super::marks::Projection;
+use super::pixel_at;
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::number::short;
@@ -88,20 +89,9 @@ impl Ground<'_> {
         }
     }
 
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        clippy::cast_precision_loss,
-        reason = "brought to the picture's borders, which are small"
-    )]
     fn shows(&self, at: Pos2) -> bool {
-        let [width, height] = self.image.size;
-        let part = (at - self.rect.min) / self.rect.size();
-        let place = |part: f32, count: usize| {
-            ((part * count as f32).max(0.0) as usize).min(count.saturating_sub(1))
-        };
-        let (x, y) = (place(part.x, width), place(part.y, height));
-        self.image.pixels.get(y * width + x) == Some(&self.background)
+        let [x, y] = pixel_at(self.rect, self.image.size, at);
+        self.image.pixels.get(y * self.image.width() + x) == Some(&self.background)
     }
 }
 

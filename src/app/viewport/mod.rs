@@ -303,19 +303,9 @@ impl Viewport {
     }
 
     /// Returns the pixel of the picture under a point of the window.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        clippy::cast_precision_loss,
-        reason = "brought to the picture's borders, which are small"
-    )]
     fn pixel(&self, at: Pos2) -> [usize; 2] {
-        let Some((rect, size)) = self.place else { return [0, 0] };
-        let part = (at - rect.min) / rect.size();
-        let along = |part: f32, count: usize| {
-            ((part * count as f32).max(0.0) as usize).min(count.saturating_sub(1))
-        };
-        [along(part.x, size.width), along(part.y, size.height)]
+        self.place
+            .map_or([0, 0], |(rect, Size { width, height })| pixel_at(rect, [width, height], at))
     }
 
     /// Returns the centre of a pixel in the window.
@@ -345,6 +335,21 @@ impl Viewport {
         let Some((rect, _)) = self.place else { return };
         plate_ui(ui, rect, egui::Align2::LEFT_BOTTOM, text);
     }
+}
+
+/// Returns the pixel under a point of the window, of a picture of this size in `rect`.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_precision_loss,
+    reason = "brought to the picture's borders, which are small"
+)]
+fn pixel_at(rect: Rect, [width, height]: [usize; 2], at: Pos2) -> [usize; 2] {
+    let part = (at - rect.min) / rect.size();
+    let along = |part: f32, count: usize| {
+        ((part * count as f32).max(0.0) as usize).min(count.saturating_sub(1))
+    };
+    [along(part.x, width), along(part.y, height)]
 }
 
 /// Returns the rest of `ui`, aligned to whole pixels, and its size in pixels.
