@@ -114,6 +114,9 @@ pub enum Request {
     Refuse(String),
 }
 
+/// Requests, in the order in which they are answered.
+pub(crate) type Requests = Vec<Request>;
+
 /// How items are added to the selection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Also {
@@ -210,7 +213,7 @@ pub enum LabRequest {
 
 /// Requests a change of the scene, or reports why it is refused.
 pub(crate) fn change(
-    requests: &mut Vec<Request>,
+    requests: &mut Requests,
     label: impl Into<String>,
     gesture: Gesture,
     command: Result<Command, Refusal>,
@@ -219,11 +222,7 @@ pub(crate) fn change(
 }
 
 /// Requests a change of the view.
-pub(crate) fn change_view(
-    requests: &mut Vec<Request>,
-    state: &State,
-    change: impl FnOnce(&mut View),
-) {
+pub(crate) fn change_view(requests: &mut Requests, state: &State, change: impl FnOnce(&mut View)) {
     let mut view = state.view.clone();
     change(&mut view);
     requests.push(Request::View(Box::new(view)));

@@ -9,6 +9,8 @@ use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
 use egui::{Context, Id, Modal, Ui};
+#[cfg(feature = "desktop")]
+use winit::raw_window_handle::{HasDisplayHandle, HasWindowHandle};
 
 use super::answer::{Answer, End};
 use super::browser::{Browser, Choice, Look, Mode};
@@ -18,13 +20,18 @@ use super::picture_dialog::{PictureChoices, PictureDialog};
 use super::questions::{self, close_ui};
 use super::wanted::{After, Wanted};
 use crate::app::input::keyboard::Keyboard;
-#[cfg(feature = "desktop")]
-use crate::app::shell::Parent;
 use crate::app::tasks::{Outcome, Task};
 use crate::app::widgets::controls::heading;
 
 /// A system dialog that ends within this time was never shown.
 const AT_ONCE: Duration = Duration::from_millis(400);
+
+/// The window as the parent of system dialogs.
+#[cfg(feature = "desktop")]
+pub(crate) trait Parent: HasWindowHandle + HasDisplayHandle {}
+
+#[cfg(feature = "desktop")]
+impl<T: HasWindowHandle + HasDisplayHandle> Parent for T {}
 
 /// All open dialogs.
 #[derive(Debug, Default)]

@@ -34,8 +34,10 @@ use std::time::Duration;
 
 use egui::{Context, Event, UiBuilder, ViewportCommand};
 
-use crate::app::actions::{Action, Request};
+use crate::app::actions::{Action, Requests};
 use crate::app::documents::dialogs::Dialogs;
+#[cfg(feature = "desktop")]
+use crate::app::documents::dialogs::Parent;
 use crate::app::documents::loading::{Loading, Queued};
 use crate::app::documents::wanted::After;
 use crate::app::drawing::motion::{Happening, Motion};
@@ -44,8 +46,6 @@ use crate::app::drawing::worker::Worker;
 use crate::app::fonts;
 use crate::app::input::keyboard::{Keyboard, Press};
 use crate::app::panels::{Panel, arrange, notices, pixel};
-#[cfg(feature = "desktop")]
-use crate::app::shell::Parent;
 use crate::app::state::layout::NARROW;
 use crate::app::state::{Notice, State};
 use crate::app::theme;
@@ -306,7 +306,7 @@ impl App {
     }
 
     /// Prepares a frame: takes the worker's results, advances the clock, reads the screen.
-    fn begin(&mut self, ctx: &Context, requests: &mut Vec<Request>) {
+    fn begin(&mut self, ctx: &Context, requests: &mut Requests) {
         if self.worker.is_none() {
             Keyboard::install(ctx);
             tooltips::install(ctx);

@@ -5,7 +5,7 @@
 use egui::{Atom, Context, IdSalt, Response, RichText, Role, Ui, WidgetInfo};
 
 use super::keyboard::{Keyboard, Press};
-use crate::app::actions::{Action, Request};
+use crate::app::actions::{Action, Requests};
 use crate::app::state::State;
 use crate::app::widgets::controls::{Choice, Switch, icon_button};
 use crate::app::widgets::icons::Icon;
@@ -100,12 +100,7 @@ pub(crate) fn first_key(ui: &Ui, action: Action) -> Option<String> {
 }
 
 /// Shows the switch of an action, with its key and its tooltip.
-pub(crate) fn action_switch(
-    ui: &mut Ui,
-    state: &State,
-    requests: &mut Vec<Request>,
-    action: Action,
-) {
+pub(crate) fn action_switch(ui: &mut Ui, state: &State, requests: &mut Requests, action: Action) {
     let info = action.info();
     let switch = Switch {
         label: info.label,
@@ -122,7 +117,7 @@ pub(crate) fn action_switch(
 pub(crate) fn action_icon(
     ui: &mut Ui,
     state: &State,
-    requests: &mut Vec<Request>,
+    requests: &mut Requests,
     icon: Icon,
     action: Action,
 ) {

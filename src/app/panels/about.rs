@@ -4,7 +4,7 @@
 use egui::{Rect, RichText, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, Window, vec2};
 use fearless_simd::Level;
 
-use crate::app::actions::{Action, Request};
+use crate::app::actions::{Action, Requests};
 use crate::app::panels::Panel;
 use crate::app::state::State;
 use crate::app::theme;
@@ -20,7 +20,7 @@ const INSTALLATION: &str = include_str!("../../../docs/install.md");
 const SIZE: egui::Vec2 = vec2(460.0, 460.0);
 
 /// Shows the panel; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, _state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &mut Ui, _state: &State, requests: &mut Requests) {
     let mut open = true;
     let room = ui.ctx().content_rect().size() - vec2(80.0, 120.0);
     let size = SIZE.min(room);

@@ -4,7 +4,7 @@ use egui::{Frame, Layout, Margin, Rect, Ui, UiBuilder};
 
 use super::{Dock, Panel, Side, each_panel};
 use super::{dial, greeting, lesson_card, menu_bar, palette, splitters, status_line};
-use crate::app::actions::Request;
+use crate::app::actions::Requests;
 use crate::app::state::State;
 use crate::app::state::layout::Places;
 use crate::app::theme;
@@ -19,7 +19,7 @@ pub(crate) struct Arrangement {
 }
 
 /// Shows the contents of a panel and adds its requests.
-type Contents = fn(&mut Ui, &State, &mut Vec<Request>);
+type Contents = fn(&mut Ui, &State, &mut Requests);
 
 macro_rules! contents {
     ($(
@@ -44,7 +44,7 @@ impl Arrangement {
 
     /// Shows everything over the picture: open panels, the palette and the greeting. The splitters
     /// come last, since the picture would take their presses.
-    pub(crate) fn over_picture_ui(&self, ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+    pub(crate) fn over_picture_ui(&self, ui: &mut Ui, state: &State, requests: &mut Requests) {
         if state.picture_only {
             return;
         }
@@ -63,7 +63,7 @@ impl Arrangement {
 }
 
 /// Shows the bars and all open docked panels.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) -> Arrangement {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) -> Arrangement {
     if state.picture_only {
         let area = ui.available_rect_before_wrap();
         return Arrangement { area, places: Places::of_picture(area) };

@@ -3,7 +3,7 @@
 use egui::{Id, Key, RichText, ScrollArea, TextStyle, Ui, Window, vec2};
 
 use crate::app::actions::search::{Search, Texts};
-use crate::app::actions::{Action, Group, KeyRequest, MouseInfo, Request};
+use crate::app::actions::{Action, Group, KeyRequest, MouseInfo, Request, Requests};
 use crate::app::input::keyboard::Keyboard;
 use crate::app::input::keymap::Keymap;
 use crate::app::panels::Panel;
@@ -17,7 +17,7 @@ const LABEL: f32 = 150.0;
 const NOW: f32 = 36.0;
 
 /// Shows the panel; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let mut open = true;
     let room = ui.ctx().content_rect().size() - vec2(80.0, 120.0);
     Window::new("Keys")
@@ -33,7 +33,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     }
 }
 
-fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn contents(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let id = Id::unique("search among the keys");
     // If the previous pass did not show the panel, it was just opened: the old search is cleared.
     let pass = ui.ctx().cumulative_pass_nr();
@@ -103,7 +103,7 @@ fn switched_id() -> Id {
 }
 
 /// Shows the switch between using and changing keys. Returns whether keys are being changed.
-fn changes_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Vec<Request>) -> bool {
+fn changes_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Requests) -> bool {
     let id = Id::unique("keys are changed");
     let mut changes = ui.data(|data| data.get_temp(id)).unwrap_or(false);
     ui.horizontal(|ui| {
@@ -125,7 +125,7 @@ fn changes_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Vec<Request>) -> bool
 }
 
 /// Asks for a key, or reports that another action has the chosen key.
-fn choosing_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Vec<Request>) {
+fn choosing_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Requests) {
     let Some((action, chord)) = Keyboard::choosing(ui.ctx()) else { return };
     let label = action.info().label;
     let Some(chord) = chord else {
@@ -150,7 +150,7 @@ fn choosing_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Vec<Request>) {
 }
 
 /// Shows an action with a button that changes its key.
-fn change_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Vec<Request>, action: Action) {
+fn change_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Requests, action: Action) {
     let label = action.info().label;
     ui.horizontal(|ui| {
         let keys: Vec<String> = keymap.keys(action).iter().map(|key| key.name()).collect();
@@ -228,7 +228,7 @@ impl Columns<'_> {
 }
 
 /// Shows an action; a click performs it.
-fn line(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, action: Action) {
+fn line(ui: &mut Ui, state: &State, requests: &mut Requests, action: Action) {
     let info = action.info();
     let available = action.availability(state);
     let enabled = available.is_ok();

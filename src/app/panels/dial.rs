@@ -8,7 +8,7 @@
 use egui::{Align2, Area, Color32, ComboBox, Frame, Id, Order, Rect, RichText, Role, Sense};
 use egui::{TextStyle, Ui, WidgetInfo, pos2, vec2};
 
-use crate::app::actions::{Action, Request};
+use crate::app::actions::{Action, Request, Requests};
 use crate::app::input::buttons::first_key;
 use crate::app::state::State;
 use crate::app::state::laboratory::Compare;
@@ -35,7 +35,7 @@ const UNFOLDED: f32 = 300.0;
 const LOW: f32 = 400.0;
 
 /// Shows the dial; its requests are added to `requests`.
-pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Requests) {
     let is_small = picture.width() < LEAST.x || picture.height() < LEAST.y;
     // A comparison has its own labels there.
     if !state.shows_dial() || is_small || state.lab.compare != Compare::Off {
@@ -60,7 +60,7 @@ pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Vec<Req
 }
 
 /// Shows the row of the current settings, which unfolds the others.
-fn folded_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn folded_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let rows = rows(state);
     let on = rows.iter().find(|row| row.settings == state.settings);
     let mut text = RichText::new(on.map_or_else(|| "Accuracy".to_owned(), |row| row.name(state)));
@@ -76,7 +76,7 @@ fn folded_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     combo.response.accessible_name("Accuracy").on_hover_text(hint);
 }
 
-fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn contents(ui: &mut Ui, state: &State, requests: &mut Requests) {
     head_ui(ui, state, requests);
     let rows = rows(state);
     let ids: Vec<Id> = rows.iter().map(|row| ui.scope_id().with(row.label)).collect();
@@ -100,7 +100,7 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 }
 
 /// Shows the heads of the columns, and the button of the loupe.
-fn head_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn head_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let (rect, _) = ui.allocate_exact_size(vec2(WIDTH, theme::ROW - 2.0), Sense::hover());
     let weak = ui.visuals().weak_text_color();
     let heads = [

@@ -8,7 +8,7 @@ use egui::{
 };
 
 use crate::app::actions::search::{Search, Texts};
-use crate::app::actions::{Action, LabRequest, Request};
+use crate::app::actions::{Action, LabRequest, Request, Requests};
 use crate::app::input::keyboard::Keyboard;
 use crate::app::input::keymap::Keymap;
 use crate::app::state::State;
@@ -44,7 +44,7 @@ struct Entry {
 const ENTRY: f32 = theme::ROW + 2.0;
 
 /// Shows the palette; its requests are added to `requests`.
-pub(crate) fn show(ui: &Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &Ui, state: &State, requests: &mut Requests) {
     let id = Id::unique("palette");
     let room = ui.ctx().content_rect().size();
     let width = WIDTH.min(room.x - 40.0);
@@ -79,7 +79,7 @@ fn forget(ui: &Ui) {
 }
 
 /// Shows the field and the list. Returns whether an entry was chosen.
-fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, height: f32) -> bool {
+fn contents(ui: &mut Ui, state: &State, requests: &mut Requests, height: f32) -> bool {
     let id = query_id();
     let first = ui.data(|data| data.get_temp::<String>(id)).is_none();
     let mut query: String = ui.data(|data| data.get_temp(id)).unwrap_or_default();

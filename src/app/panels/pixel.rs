@@ -7,7 +7,7 @@ use egui::{
 };
 use glam::DVec3;
 
-use crate::app::actions::Request;
+use crate::app::actions::{Request, Requests};
 use crate::app::state::{ExplainedPixel, State};
 use crate::app::theme;
 use crate::app::widgets::controls::{self, icon_button};
@@ -29,7 +29,7 @@ const BUTTONS: f32 = 76.0;
 const AXES: f32 = 90.0;
 
 /// Shows the window; its requests are added to `requests`.
-pub(crate) fn show(ctx: &Context, state: &State, picture: Rect, requests: &mut Vec<Request>) {
+pub(crate) fn show(ctx: &Context, state: &State, picture: Rect, requests: &mut Requests) {
     let Some(pixel) = &state.explained else { return };
     let mut open = true;
     let [x, y] = pixel.at;
@@ -92,7 +92,7 @@ fn buttons_ui(
     state: &State,
     pixel: &ExplainedPixel,
     explained: &PixelColor,
-    requests: &mut Vec<Request>,
+    requests: &mut Requests,
 ) {
     ui.horizontal(|ui| {
         if ui.button("Copy as text").clicked() {

@@ -10,7 +10,7 @@ use egui::{
     Align2, Color32, Id, Rect, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2,
 };
 
-use crate::app::actions::{Action, Request};
+use crate::app::actions::{Action, Requests};
 use crate::app::state::{Measured, State};
 use crate::app::theme;
 use crate::app::widgets::controls;
@@ -21,7 +21,7 @@ use marraztu_lab::cost::{Explained, Group};
 use marraztu_render::{Effect, EffectUse};
 
 /// Shows the panel; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let Some(explained) = state.plan.explained.clone() else {
         ui.add(egui::Label::new("The plan appears with the next picture.").wrap());
         return;
@@ -40,7 +40,7 @@ const LEAST: f32 = 400.0;
 const ROOMY: f32 = 540.0;
 
 /// Shows the summary and the Measure button.
-fn header_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, explained: &Explained) {
+fn header_ui(ui: &mut Ui, state: &State, requests: &mut Requests, explained: &Explained) {
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
         let title = ui.label(RichText::new("Plan").strong());

@@ -7,7 +7,7 @@ use egui::{
     Align, DragValue, Layout, ScrollArea, Sense, TextStyle, ThemePreference, Ui, Window, vec2,
 };
 
-use crate::app::actions::{Action, Request};
+use crate::app::actions::{Action, Request, Requests};
 use crate::app::input::keyboard::Keyboard;
 use crate::app::panels::{OpenPanels, Panel};
 use crate::app::state::State;
@@ -22,8 +22,6 @@ const SIZE: egui::Vec2 = vec2(480.0, 470.0);
 
 /// The width of the labels.
 const LABEL: f32 = 150.0;
-
-type Requests = Vec<Request>;
 
 /// A remembered value.
 struct Row {
@@ -242,7 +240,7 @@ pub(crate) fn now(ctx: &egui::Context, state: &State, before: Option<[f32; 2]>) 
 }
 
 /// Shows the panel; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let mut open = true;
     let room = ui.ctx().content_rect().size() - vec2(80.0, 120.0);
     let size = SIZE.min(room);

@@ -10,7 +10,7 @@ use egui::{
 };
 
 use super::outline::place;
-use crate::app::actions::Request;
+use crate::app::actions::{Request, Requests};
 use crate::app::state::{Message, Reduction, State, Tone};
 use crate::app::theme;
 use crate::app::widgets::controls;
@@ -28,7 +28,7 @@ const BETWEEN: &str = "  |  ";
 const LONGEST_NAME: usize = 28;
 
 /// Shows the panel; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -52,7 +52,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 }
 
 /// Shows a button that lists past notices with their details.
-fn past_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn past_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let name = match state.past_notices.len() {
         1 => "1 notice".to_owned(),
         count => format!("{count} notices"),

@@ -11,7 +11,7 @@ use egui::{
     TextStyle, Ui, WidgetInfo, vec2,
 };
 
-use crate::app::actions::{Action, Request};
+use crate::app::actions::{Action, Request, Requests};
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::controls::{focus_ring, icon_at, put_text, text};
@@ -31,7 +31,7 @@ const WIDTH: f32 = 240.0;
 type Step = (usize, usize);
 
 /// Shows both buttons; their requests are added to `requests`.
-pub(super) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(super) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let history = &state.history;
     let here = history.position();
     let done = (0..here).rev().map(|at| (at, at));
@@ -44,7 +44,7 @@ pub(super) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 fn button_ui(
     ui: &mut Ui,
     state: &State,
-    requests: &mut Vec<Request>,
+    requests: &mut Requests,
     (action, icon): (Action, Icon),
     steps: impl ExactSizeIterator<Item = Step>,
 ) {

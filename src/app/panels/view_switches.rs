@@ -2,7 +2,7 @@
 
 use egui::{Id, ScrollArea, Sense, StrokeKind, TextStyle, Ui, WidgetInfo, vec2};
 
-use crate::app::actions::{Action, Group, Request, change, change_view};
+use crate::app::actions::{Action, Group, Request, Requests, change, change_view};
 use crate::app::input::buttons::{action_choice, action_switch};
 use crate::app::state::{DrawingChoices, State};
 use crate::app::theme;
@@ -18,7 +18,7 @@ use marraztu_core::scene::{
 };
 
 /// Shows the panel; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let area = ScrollArea::vertical().id_salt("view switches").auto_shrink(false);
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
         section(ui, "Keys act on", true, |ui| {
@@ -68,7 +68,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 fn actions_ui(
     ui: &mut Ui,
     state: &State,
-    requests: &mut Vec<Request>,
+    requests: &mut Requests,
     of: &str,
     actions: &[(&str, bool, Action)],
 ) {
@@ -82,7 +82,7 @@ fn actions_ui(
 }
 
 /// Shows the subject of the keys. The key `c` changes it to the next one.
-pub(crate) fn subject_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn subject_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let subject = state.view.subject;
     let all = [
         ("Camera", Subject::Camera, Action::SubjectCamera),
@@ -106,7 +106,7 @@ pub(crate) fn subject_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>
     }
 }
 
-fn transformation_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn transformation_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let now = state.view.transformation;
     let all = [
         ("Move", now == Transformation::Translation, Action::Translate),
@@ -117,7 +117,7 @@ fn transformation_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 }
 
 /// Shows the mode of cameras, or the frame of an object's transformation.
-pub(crate) fn frame_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn frame_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let view = &state.view;
     let (of, [first, second], is_second) = match view.subject {
         Subject::Camera => {
@@ -133,7 +133,7 @@ pub(crate) fn frame_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) 
     actions_ui(ui, state, requests, of, &all);
 }
 
-fn observer_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn observer_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let object = state.view.observer == Observer::Object;
     let all = [
         ("From camera", !object, Action::ToggleObserver),
@@ -142,7 +142,7 @@ fn observer_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     actions_ui(ui, state, requests, "Observer", &all);
 }
 
-fn projection_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn projection_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let orthographic = state.view.projection == Projection::Orthographic;
     let all = [
         ("Perspective", !orthographic, Action::ToggleProjection),
@@ -151,7 +151,7 @@ fn projection_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     actions_ui(ui, state, requests, "Projection", &all);
 }
 
-fn background_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn background_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     row(ui, "Background", |ui| {
         let color = state.scene.background;
         let changed = swatch(ui, "Background", "Colour of the background", color);
@@ -165,7 +165,7 @@ fn background_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 const EXPOSURE_WIDTH: f32 = 84.0;
 
 /// Shows the exposure, with a button that fits it to the picture.
-fn exposure_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn exposure_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     row(ui, "Exposure", |ui| {
         let most = View::MOST_EXPOSURE;
         let field = Number::new("Exposure", "Stops: each doubles all light")
@@ -180,7 +180,7 @@ fn exposure_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 }
 
 /// Shows the lights that have keys as a row of small switches.
-fn slots_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn slots_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         let width = ((ui.available_width() - 9.0 * 2.0) / 10.0).floor();
@@ -206,7 +206,7 @@ struct Slot {
 fn slot_ui(
     ui: &mut Ui,
     state: &State,
-    requests: &mut Vec<Request>,
+    requests: &mut Requests,
     action: Action,
     slot: u32,
     place: Slot,
@@ -247,7 +247,7 @@ fn slot_ui(
     }
 }
 
-fn normals_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn normals_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let face = state.view.normals == Normals::Face;
     let all =
         [("Vertex", !face, Action::ToggleLightNormals), ("Face", face, Action::ToggleLightNormals)];
@@ -255,7 +255,7 @@ fn normals_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 }
 
 /// Shows the accuracy presets and every axis of the table.
-fn settings_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn settings_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let now = state.settings;
     let preset = |preset: &AccuracyPreset| (preset.label, preset.of(&now), preset.in_words());
     let all: Vec<_> = ACCURACY_PRESETS.iter().map(preset).collect();
@@ -272,7 +272,7 @@ fn settings_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 }
 
 /// Shows the preferences for drawing: refinement, and the time budget while moving.
-fn drawing_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn drawing_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let now = state.drawing;
     let hint = "The samples per pixel in the window while nothing moves. Files and the laboratory \
         keep the setting above.";
@@ -304,7 +304,7 @@ fn is_of_light(axis: &Axis) -> bool {
 }
 
 /// Shows the choices of an axis of accuracy.
-pub(crate) fn axis_ui(ui: &mut Ui, axis: &Axis, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn axis_ui(ui: &mut Ui, axis: &Axis, state: &State, requests: &mut Requests) {
     let now = state.settings;
     let senseless = (axis.sense)(&state.scene, &state.view).err();
     let own = |choice: &marraztu_core::accuracy::Choice| {

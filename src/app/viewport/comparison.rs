@@ -8,7 +8,7 @@ use std::sync::Arc;
 use egui::{Align2, ColorImage, Context, CursorIcon, Id, Pos2, Rect, Sense, Stroke, TextureHandle};
 use egui::{TextureOptions, Ui, pos2, vec2};
 
-use crate::app::actions::{LabRequest, Request};
+use crate::app::actions::{LabRequest, Request, Requests};
 use crate::app::state::State;
 use crate::app::state::laboratory::{Compare, in_words};
 use crate::app::tasks::Task;
@@ -101,7 +101,7 @@ impl Comparison {
     }
 
     /// Shows the comparison over the picture in `rect`.
-    pub(crate) fn ui(&mut self, ui: &Ui, rect: Rect, state: &State, requests: &mut Vec<Request>) {
+    pub(crate) fn ui(&mut self, ui: &Ui, rect: Rect, state: &State, requests: &mut Requests) {
         match state.lab.compare {
             Compare::Off => {}
             Compare::Split(part) => self.split_ui(ui, rect, (part, state), requests),
@@ -109,13 +109,7 @@ impl Comparison {
         }
     }
 
-    fn split_ui(
-        &self,
-        ui: &Ui,
-        rect: Rect,
-        (part, state): (f32, &State),
-        requests: &mut Vec<Request>,
-    ) {
+    fn split_ui(&self, ui: &Ui, rect: Rect, (part, state): (f32, &State), requests: &mut Requests) {
         let scale = ui.ctx().pixels_per_point();
         // The split is aligned to whole pixels, so it cuts through none.
         let x = ((rect.left() + part * rect.width()) * scale).round() / scale;

@@ -3,13 +3,13 @@
 use egui::{Id, Ui};
 
 use super::Viewport;
-use crate::app::actions::{ADD_LIGHTS, Action, Request};
+use crate::app::actions::{ADD_LIGHTS, Action, Request, Requests};
 use crate::app::state::State;
 use marraztu_core::scene::ItemId;
 
 impl Viewport {
     /// Shows the menu while it is open.
-    pub(super) fn menu_ui(&self, ui: &Ui, state: &State, requests: &mut Vec<Request>) {
+    pub(super) fn menu_ui(&self, ui: &Ui, state: &State, requests: &mut Requests) {
         let Some(menu) = self.menu else { return };
         let popup = egui::Popup::new(id(), ui.ctx().clone(), menu.at, ui.layer_id())
             .kind(egui::PopupKind::Menu)

@@ -23,7 +23,7 @@ use egui::{
 };
 use glam::DMat4;
 
-use crate::app::actions::{Action, LabRequest, Request};
+use crate::app::actions::{Action, LabRequest, Request, Requests};
 use crate::app::drawing::border::Border;
 use crate::app::drawing::worker::{News, Pick, Worker};
 use crate::app::input::keyboard::{Keyboard, Letters};
@@ -137,7 +137,7 @@ impl Viewport {
     }
 
     /// Cancels the current drag. Returns whether there was one.
-    pub(crate) fn cancel_drag(&mut self, requests: &mut Vec<Request>) -> bool {
+    pub(crate) fn cancel_drag(&mut self, requests: &mut Requests) -> bool {
         self.mouse.cancel(requests)
     }
 
@@ -147,7 +147,7 @@ impl Viewport {
         ctx: &Context,
         state: &State,
         news: News<Purpose>,
-        requests: &mut Vec<Request>,
+        requests: &mut Requests,
     ) {
         if news.border.is_some() {
             self.border = news.border;
@@ -187,7 +187,7 @@ impl Viewport {
         ui: &Ui,
         state: &State,
         worker: &Worker<Purpose>,
-        requests: &mut Vec<Request>,
+        requests: &mut Requests,
     ) {
         let (rect, size) = whole_pixels(ui);
         self.place = Some((rect, size));

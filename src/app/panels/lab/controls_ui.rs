@@ -2,7 +2,7 @@
 
 use egui::{ProgressBar, RichText, ScrollArea, Ui};
 
-use crate::app::actions::{LabRequest, Request};
+use crate::app::actions::{LabRequest, Request, Requests};
 use crate::app::state::State;
 use crate::app::state::laboratory::{Compare, in_words};
 use crate::app::theme;
@@ -18,7 +18,7 @@ use marraztu_lab::report::{Budgets, Report, brief, capitalized, tabs};
 use marraztu_lab::suite::SuiteDetail;
 
 /// Shows the panel; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let area = ScrollArea::vertical().id_salt("what the laboratory is asked").auto_shrink(false);
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
         measure_ui(ui, state, requests);
@@ -37,7 +37,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 
 /// Shows the buttons that measure, or the progress.
 #[expect(clippy::cast_possible_truncation, reason = "a fraction from 0 to 1")]
-pub(super) fn measure_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(super) fn measure_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let lab = &state.lab;
     ui.horizontal(|ui| match lab.running {
         Some(fraction) => {
@@ -97,7 +97,7 @@ pub(super) fn age_ui(ui: &mut Ui, state: &State) {
     }
 }
 
-fn judge_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn judge_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let texts = [
         ("RMSE", "The root of the mean square of the differences, in byte steps of 255"),
         ("Maximum", "The largest difference of a byte, in steps of 255"),
@@ -112,7 +112,7 @@ fn judge_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     }
 }
 
-fn region_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn region_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let all = [
         ("All pixels", Region::Whole, "Errors over the whole picture, edges included"),
         ("Same coverage", Region::Inside, "Errors over the pixels that show the same triangle"),
@@ -123,7 +123,7 @@ fn region_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     }
 }
 
-fn budgets_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn budgets_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let (budgets, report) = (state.lab.budgets, state.lab.shown());
     let error = Budget {
         label: "Error up to",
@@ -166,7 +166,7 @@ fn budget_ui(
     ui: &mut Ui,
     budget: &Budget,
     report: Option<&Report>,
-    requests: &mut Vec<Request>,
+    requests: &mut Requests,
 ) -> Option<Option<f64>> {
     let mut changed = None;
     row(ui, budget.label, |ui| {
@@ -197,7 +197,7 @@ fn budget_ui(
     changed
 }
 
-fn compare_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn compare_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let now = state.lab.compare;
     // Every split is the same choice, wherever its slider is.
     let chosen = if matches!(now, Compare::Split(_)) { Compare::Split(0.5) } else { now };
@@ -220,7 +220,7 @@ fn compare_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 }
 
 /// Chooses the picture to compare with: the ideal, or the one that differs in a single axis.
-fn with_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn with_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let now = state.lab.reference;
     let alone = match now {
         Reference::Alone(axis) => axis,
@@ -238,7 +238,7 @@ fn with_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     }
 }
 
-fn pixel_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn pixel_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let switch = Switch::new("Attribute the error of a pixel", state.lab.picking).ui(ui);
     let switch = switch.on_hover_text("Shows the error of one pixel and attributes it to an axis");
     if switch.clicked() {

@@ -10,7 +10,7 @@ mod table;
 
 use egui::{Id, Layout, Rect, ScrollArea, Ui, UiBuilder, vec2};
 
-use crate::app::actions::Request;
+use crate::app::actions::Requests;
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::controls::choose;
@@ -32,7 +32,7 @@ const HALF_WIDE: f32 = 760.0;
 const BESIDE: f32 = 0.42;
 
 /// Shows the panel; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let whole = ui.available_rect_before_wrap();
     if whole.width() < WIDE {
         return one_ui(ui, state, requests);
@@ -109,7 +109,7 @@ impl Part {
 }
 
 /// Shows one part at a time, with a choice of the part.
-fn one_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn one_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let id = Id::unique("part of the laboratory");
     let (part, was_running): (Part, bool) = ui.data(|data| data.get_temp(id)).unwrap_or_default();
     let all = Part::all(ui.available_width());
@@ -152,7 +152,7 @@ fn one_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 }
 
 /// Shows the verdict, in at most a share of the height.
-fn verdict_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn verdict_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let most = VERDICT * ui.available_height();
     let area =
         ScrollArea::vertical().id_salt("verdict").max_height(most).auto_shrink([false, true]);

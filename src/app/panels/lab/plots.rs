@@ -7,7 +7,7 @@ use egui::{
 use egui::{WidgetInfo, pos2, vec2};
 use egui_plot::{GridMark, Plot, PlotPoint, PlotTransform, Span};
 
-use crate::app::actions::{LabRequest, Request};
+use crate::app::actions::{LabRequest, Request, Requests};
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::controls::{self, choose_in_rows};
@@ -41,7 +41,7 @@ fn mark_color(visuals: &Visuals, mark: &PanelMark) -> Color32 {
 }
 
 /// Shows the choice of the scene, and the verdict: it comes first, because it answers the question.
-pub(crate) fn verdict_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn verdict_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     suite_ui(ui, state, requests);
     for sentence in state.lab.shown().map(Report::verdict).unwrap_or_default() {
         ui.add(egui::Label::new(sentence).wrap());
@@ -49,7 +49,7 @@ pub(crate) fn verdict_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>
 }
 
 /// Shows a plot; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let Some(report) = state.lab.shown() else {
         return empty_ui(ui, state);
     };
@@ -113,7 +113,7 @@ fn sketch_ui(ui: &Ui, rect: Rect) {
 }
 
 /// Shows the choice between the scene on screen and the scenes of the suite.
-fn suite_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn suite_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     if state.lab.suite.is_empty() {
         return;
     }
@@ -128,7 +128,7 @@ fn suite_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 }
 
 /// Shows the choice of a plot.
-fn panels_ui(ui: &mut Ui, panels: &Panels, shown: &Panel, requests: &mut Vec<Request>) {
+fn panels_ui(ui: &mut Ui, panels: &Panels, shown: &Panel, requests: &mut Requests) {
     ui.horizontal(|ui| {
         let combo = ComboBox::from_id_salt("plot").selected_text(&shown.title).width(180.0);
         let combo = combo.height(400.0).show_ui(ui, |ui| {
@@ -148,7 +148,7 @@ fn panel_ui(
     ui: &mut Ui,
     (panels, panel): (&Panels, &Panel),
     (state, report): (&State, &Report),
-    requests: &mut Vec<Request>,
+    requests: &mut Requests,
 ) {
     // Marks are connected in order, each with a line for the noise of its time.
     let transform = plot_ui(ui, panels, panel);

@@ -2,7 +2,7 @@
 
 use egui::{Color32, Id, Rect, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, vec2};
 
-use crate::app::actions::Request;
+use crate::app::actions::{Request, Requests};
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::controls::{focus_ring, no_narrower, put_text, text};
@@ -86,7 +86,7 @@ fn ratio(ratio: f64) -> String {
 }
 
 /// Shows the panel; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let Some(report) = state.lab.shown() else {
         ui.weak("Nothing has been measured yet.");
         return;
@@ -94,7 +94,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     no_narrower(ui, LEAST, |ui| rows_ui(ui, state, report, requests));
 }
 
-fn rows_ui(ui: &mut Ui, state: &State, report: &Report, requests: &mut Vec<Request>) {
+fn rows_ui(ui: &mut Ui, state: &State, report: &Report, requests: &mut Requests) {
     head_ui(ui);
     let area = ScrollArea::vertical().id_salt("table of the laboratory").auto_shrink(false);
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
@@ -172,7 +172,7 @@ fn row_ui(
     report: &Report,
     row: &Row,
     (place, on_front): (Place, bool),
-    requests: &mut Vec<Request>,
+    requests: &mut Requests,
 ) {
     let (point, error) = (&report.findings.points[row.point], &row.error);
     let now = point.settings == state.settings;

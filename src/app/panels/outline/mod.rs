@@ -12,7 +12,7 @@ use egui::{
     Id, Popup, Rect, Role, ScrollArea, Sense, TextStyle, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 
-use crate::app::actions::{ADD_LIGHTS, Action, Request};
+use crate::app::actions::{ADD_LIGHTS, Action, Request, Requests};
 use crate::app::input::buttons::action_icon;
 use crate::app::state::State;
 use crate::app::theme;
@@ -35,7 +35,7 @@ enum Line {
 }
 
 /// Shows the panel; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let all = ui.available_rect_before_wrap();
     let tools = all.with_min_y((all.bottom() - theme::ROW).max(all.top()));
     let tools = tools.with_max_x(all.right() - f32::from(theme::MARGIN));
@@ -47,7 +47,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     tools_ui(&mut child, state, requests);
 }
 
-fn list_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn list_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     if state.renaming.is_none() {
         row::forget_new_name(ui);
     }
@@ -117,7 +117,7 @@ fn lines(state: &State, unfolded: &BTreeSet<ObjectId>) -> Vec<Line> {
 }
 
 /// Shows a filter for names, if there are many items.
-fn filter_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn filter_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     if !state.has_filter() {
         return;
     }
@@ -149,7 +149,7 @@ fn follow_selection(ui: &Ui, state: &State, line: Line, rect: Rect) {
 fn line_ui(
     ui: &mut Ui,
     state: &State,
-    requests: &mut Vec<Request>,
+    requests: &mut Requests,
     line: Line,
     rect: Rect,
     (unfolded, is_stop): (&mut BTreeSet<ObjectId>, bool),
@@ -173,13 +173,7 @@ fn unfolded_of(unfolded: &BTreeSet<ObjectId>, item: ItemId) -> bool {
     matches!(item, ItemId::Object(id) if unfolded.contains(&id))
 }
 
-fn header_ui(
-    ui: &mut Ui,
-    state: &State,
-    requests: &mut Vec<Request>,
-    subject: Subject,
-    rect: Rect,
-) {
+fn header_ui(ui: &mut Ui, state: &State, requests: &mut Requests, subject: Subject, rect: Rect) {
     let scene = &state.scene;
     let (action, name, count) = match subject {
         Subject::Object => (Action::SubjectObject, "Objects", scene.objects.len()),
@@ -216,7 +210,7 @@ fn header_ui(
 }
 
 /// Shows the button that adds an item to a list.
-fn add_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, subject: Subject) {
+fn add_ui(ui: &mut Ui, state: &State, requests: &mut Requests, subject: Subject) {
     match subject {
         Subject::Object => action_icon(ui, state, requests, Icon::PLUS, Action::Load),
         Subject::Camera => action_icon(ui, state, requests, Icon::PLUS, Action::AddCamera),
@@ -235,7 +229,7 @@ fn add_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, subject: Subj
 }
 
 /// Shows the actions on the selected item below the list.
-fn tools_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn tools_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         move_ui(ui, state, requests, Icon::UP, "Move up the list");
@@ -248,7 +242,7 @@ fn tools_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     });
 }
 
-fn move_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, icon: Icon, name: &str) {
+fn move_ui(ui: &mut Ui, state: &State, requests: &mut Requests, icon: Icon, name: &str) {
     let place = state.selected().and_then(|id| Some((id, place(state, id)?)));
     let to = place.and_then(|(id, (at, count))| {
         let to = if icon == Icon::UP { at.checked_sub(1)? } else { at + 1 };

@@ -6,7 +6,7 @@ use egui::{
 };
 
 use super::order::take_dragged;
-use crate::app::actions::{Action, Also, Request, change};
+use crate::app::actions::{Action, Also, Request, Requests, change};
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::controls::{self, icon_at};
@@ -43,7 +43,7 @@ pub(crate) fn busy(ui: &Ui, items: &[ItemId]) -> Option<usize> {
 }
 
 /// Shows an item. Returns whether the user folds or unfolds its parts.
-pub(crate) fn item_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, row: &Row) -> bool {
+pub(crate) fn item_ui(ui: &mut Ui, state: &State, requests: &mut Requests, row: &Row) -> bool {
     let Row { item, rect, is_stop, unfolded } = *row;
     let name = state.name(item).unwrap_or_default();
     let response =
@@ -138,7 +138,7 @@ fn is_shown(scene: &Scene, item: ItemId) -> bool {
 }
 
 /// Shows the eye, or the switch of a light. Returns the x position of its left end.
-fn shown_ui(ui: &Ui, state: &State, requests: &mut Vec<Request>, row: &Row, shown: bool) -> f32 {
+fn shown_ui(ui: &Ui, state: &State, requests: &mut Requests, row: &Row, shown: bool) -> f32 {
     let Row { item, rect, is_stop, .. } = *row;
     let (icon, verb) = match (item, shown) {
         (ItemId::Light(_), true) => (Icon::ON, "Switch off"),
@@ -192,7 +192,7 @@ const LOCK: f32 = 16.0;
 fn lock_ui(
     ui: &Ui,
     state: &State,
-    requests: &mut Vec<Request>,
+    requests: &mut Requests,
     row: &Row,
     (right, hovered): (f32, bool),
 ) -> f32 {
@@ -239,7 +239,7 @@ pub(crate) fn forget_new_name(ui: &Ui) {
 }
 
 /// Shows a field for a new name. Enter or a click outside confirms the name, Esc cancels.
-fn rename_ui(ui: &mut Ui, requests: &mut Vec<Request>, rect: Rect, name: &str) {
+fn rename_ui(ui: &mut Ui, requests: &mut Requests, rect: Rect, name: &str) {
     let id = new_name();
     let begun: Option<String> = ui.data(|data| data.get_temp(id));
     let mut text = begun.clone().unwrap_or_else(|| name.to_owned());
@@ -280,7 +280,7 @@ fn range_to(state: &State, item: ItemId) -> Vec<ItemId> {
 }
 
 /// Handles clicks on the line.
-fn clicks(state: &State, requests: &mut Vec<Request>, item: ItemId, response: &Response) {
+fn clicks(state: &State, requests: &mut Requests, item: ItemId, response: &Response) {
     if response.double_clicked() {
         requests.push(Request::BeginRename(item));
     } else if response.clicked() {
@@ -352,7 +352,7 @@ fn fold_ui(ui: &Ui, state: &State, row: &Row, unfolded: bool, color: Color32) ->
 pub(crate) fn part_ui(
     ui: &Ui,
     state: &State,
-    requests: &mut Vec<Request>,
+    requests: &mut Requests,
     id: ObjectId,
     part: u32,
     rect: Rect,

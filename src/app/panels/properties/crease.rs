@@ -4,7 +4,7 @@ use egui::Ui;
 
 use super::number_row;
 use super::object::Shown;
-use crate::app::actions::Request;
+use crate::app::actions::Requests;
 use crate::app::widgets::number::Number;
 use marraztu_core::edit::{Gesture, items};
 use marraztu_core::scene::Crease;
@@ -14,7 +14,7 @@ use marraztu_core::scene::Crease;
 const MOST_WHILE_DRAGGED: usize = 200_000;
 
 impl Shown<'_> {
-    pub(super) fn crease_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>) {
+    pub(super) fn crease_ui(&self, ui: &mut Ui, requests: &mut Requests) {
         let object = self.object;
         let idle = items::why_no_crease(&object.model, object.file_normals);
         let idle = idle.map(|why| format!("Off: {why}"));

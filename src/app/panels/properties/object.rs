@@ -4,7 +4,7 @@ use egui::{Button, Id, Ui};
 use glam::{DMat3, DMat4, DVec3};
 
 use super::{material, missing_ui, number_row, steps_ui};
-use crate::app::actions::{Request, change};
+use crate::app::actions::{Request, Requests, change};
 use crate::app::state::State;
 use crate::app::widgets::color_picker::swatch;
 use crate::app::widgets::controls::{Switch, choose, fact, row, section};
@@ -25,7 +25,7 @@ pub(super) struct Shown<'a> {
     pub(super) object: &'a Object,
 }
 
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: ObjectId) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests, id: ObjectId) {
     let Some(object) = state.scene.objects.get(id) else { return };
     let shown = Shown { state, id, object };
     missing_ui(ui, requests, object.missing_files());
@@ -46,7 +46,7 @@ impl Shown<'_> {
     /// Requests a change of the scene, labelled with a verb and the name of the object.
     pub(super) fn change(
         &self,
-        requests: &mut Vec<Request>,
+        requests: &mut Requests,
         verb: &str,
         gesture: Gesture,
         command: Result<Command, Refusal>,
@@ -57,7 +57,7 @@ impl Shown<'_> {
     /// Requests a change of the object.
     pub(super) fn set(
         &self,
-        requests: &mut Vec<Request>,
+        requests: &mut Requests,
         verb: &str,
         gesture: Gesture,
         to: impl FnOnce(&mut Object),
@@ -65,7 +65,7 @@ impl Shown<'_> {
         self.change(requests, verb, gesture, items::change_object(&self.state.scene, self.id, to));
     }
 
-    fn placement_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>) {
+    fn placement_ui(&self, ui: &mut Ui, requests: &mut Requests) {
         let Self { state, id, object } = *self;
         let (scene, view) = (&state.scene, &state.view);
         let placement = object.placement.now();
@@ -102,7 +102,7 @@ impl Shown<'_> {
     }
 
     /// Shows the up axis of the model's file. The program's own models do not show it.
-    fn up_axis_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>) {
+    fn up_axis_ui(&self, ui: &mut Ui, requests: &mut Requests) {
         let model = &self.object.model;
         if model.source.as_deref().is_none_or(is_example) {
             return;
@@ -118,7 +118,7 @@ impl Shown<'_> {
     }
 
     /// Shows factors along the axes of the chosen frame, and the button that applies them.
-    fn stretch_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>) {
+    fn stretch_ui(&self, ui: &mut Ui, requests: &mut Requests) {
         let state = self.state;
         let id = ui.scope_id().with("stretch");
         let kept: [f64; 3] = ui.data(|data| data.get_temp(id)).unwrap_or([1.0; 3]);
@@ -146,7 +146,7 @@ impl Shown<'_> {
         });
     }
 
-    fn spin_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>) {
+    fn spin_ui(&self, ui: &mut Ui, requests: &mut Requests) {
         let (scene, time) = (&self.state.scene, self.state.view.time);
         let spin = self.object.spin;
         for axis in Axis::ALL {
@@ -178,7 +178,7 @@ impl Shown<'_> {
         });
     }
 
-    fn drawing_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>) {
+    fn drawing_ui(&self, ui: &mut Ui, requests: &mut Requests) {
         let object = self.object;
         let sides = [
             ("One side", Sides::One, "Back faces are not drawn."),

@@ -4,7 +4,7 @@ use egui::Ui;
 
 use super::number_row;
 use super::object::Shown;
-use crate::app::actions::Request;
+use crate::app::actions::{Request, Requests};
 use crate::app::widgets::color_picker::swatch;
 use crate::app::widgets::controls::{choose, fact, row};
 use crate::app::widgets::number::Number;
@@ -13,7 +13,7 @@ use marraztu_core::edit::Gesture;
 use marraztu_core::scene::{FileMaterial, MapKind, Object, Surface};
 
 impl Shown<'_> {
-    pub(super) fn surface_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>) {
+    pub(super) fn surface_ui(&self, ui: &mut Ui, requests: &mut Requests) {
         let object = self.object;
         let all = [
             ("Material", Surface::Material, "The material, lit."),
@@ -44,7 +44,7 @@ impl Shown<'_> {
         }
     }
 
-    fn texture_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>) {
+    fn texture_ui(&self, ui: &mut Ui, requests: &mut Requests) {
         let object = self.object;
         let by_hand = object.texture.as_ref().map(|texture| file_name(&texture.source));
         let of_file = object.model.materials.iter().any(|material| material.texture.is_some());

@@ -11,10 +11,8 @@ mod window;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use egui::{Context, ViewportBuilder};
-use winit::raw_window_handle::{HasDisplayHandle, HasWindowHandle};
-
 use crate::app::editor::App;
+use egui::{Context, ViewportBuilder};
 
 /// The way to paint the window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -27,11 +25,6 @@ pub enum Shell {
     /// The CPU, without OpenGL.
     Software,
 }
-
-/// The window as the parent of system dialogs.
-pub(crate) trait Parent: HasWindowHandle + HasDisplayHandle {}
-
-impl<T: HasWindowHandle + HasDisplayHandle> Parent for T {}
 
 /// Creates the editor after the window was opened.
 pub(crate) type Make = Box<dyn FnOnce(&Context) -> App>;

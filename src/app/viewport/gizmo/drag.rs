@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use super::typed::Typed;
 use super::{Gizmo, Handle, others};
-use crate::app::actions::Request;
+use crate::app::actions::{Request, Requests};
 use crate::app::chord::command_key;
 use crate::app::state::State;
 use crate::app::widgets::{expression, number::short};
@@ -105,7 +105,7 @@ impl Grab {
         &mut self,
         pull: Pull<'_>,
         gesture: Gesture,
-        requests: &mut Vec<Request>,
+        requests: &mut Requests,
     ) -> bool {
         let ended = self.typed.take(pull.typed);
         let amount = if self.is_typed() {
@@ -129,7 +129,7 @@ impl Grab {
         &mut self,
         pull: Pull<'_>,
         gesture: Gesture,
-        requests: &mut Vec<Request>,
+        requests: &mut Requests,
     ) -> bool {
         if pull.typed == "\n" && !self.is_typed() {
             return true;
