@@ -94,7 +94,6 @@ const fn gray(level: u8) -> Color32 {
     Color32::from_gray(level)
 }
 
-/// Returns the name of the font of the icons.
 pub(crate) fn icon_family() -> FontFamily {
     FontFamily::Name("icons".into())
 }
@@ -130,7 +129,6 @@ pub(crate) const fn warning_on_dark() -> Color32 {
     DARK.error
 }
 
-/// Returns the colour of errors.
 pub(crate) fn error(visuals: &Visuals) -> Color32 {
     palette(visuals).error
 }

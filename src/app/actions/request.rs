@@ -221,7 +221,6 @@ pub(crate) fn change(
     requests.push(Request::change(label, gesture, command));
 }
 
-/// Requests a change of the view.
 pub(crate) fn change_view(requests: &mut Requests, state: &State, change: impl FnOnce(&mut View)) {
     let mut view = state.view.clone();
     change(&mut view);

@@ -295,7 +295,6 @@ const fn clipboard(intent: ClipboardIntent) -> Intent {
     Intent::Clipboard(intent)
 }
 
-/// Deletes the selected items.
 fn delete(state: &State, others: &[ItemId]) -> Result<Command, Refusal> {
     selected(state)?;
     several::each(&state.scene, &state.view, others, |scene, view| {

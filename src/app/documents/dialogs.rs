@@ -33,7 +33,6 @@ pub(crate) trait Parent: HasWindowHandle + HasDisplayHandle {}
 #[cfg(feature = "desktop")]
 impl<T: HasWindowHandle + HasDisplayHandle> Parent for T {}
 
-/// All open dialogs.
 #[derive(Debug, Default)]
 pub(crate) struct Dialogs {
     /// Whether to use the system's file dialogs.
@@ -72,7 +71,6 @@ struct SystemDialog {
     task: Task<Option<Vec<PathBuf>>>,
 }
 
-/// A dialog of the window.
 #[derive(Debug)]
 pub(crate) enum Dialog {
     Browser(Wanted, Box<Browser>),
@@ -122,7 +120,6 @@ impl Dialogs {
         self.open.push(Dialog::Picture(Box::new(dialog)));
     }
 
-    /// Returns the open material dialog.
     pub(crate) fn material(&mut self) -> Option<&mut MaterialDialog> {
         self.open.iter_mut().rev().find_map(|dialog| match dialog {
             Dialog::Material(material) => Some(&mut **material),

@@ -16,7 +16,6 @@ use marraztu_core::scene::{
 };
 use marraztu_io::{Finding, Loaded};
 
-/// The material dialog.
 #[derive(Debug)]
 pub(crate) struct MaterialDialog {
     /// The model and its file; `None` if the material is for a camera.
@@ -27,7 +26,6 @@ pub(crate) struct MaterialDialog {
     crease: f64,
 }
 
-/// The choices made.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct MaterialChoices {
     pub(crate) material: MaterialChoice,

@@ -31,7 +31,6 @@ impl Purpose {
     }
 }
 
-/// The options.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PictureChoices {
     pub(crate) purpose: Purpose,
@@ -71,7 +70,6 @@ impl PictureChoices {
     }
 }
 
-/// The dialog of options.
 #[derive(Debug)]
 pub(crate) struct PictureDialog {
     choices: PictureChoices,

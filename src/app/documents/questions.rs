@@ -11,7 +11,6 @@ use super::wanted::{After, ChangedFile};
 use crate::app::widgets::controls::{heading, take_focus};
 use crate::app::widgets::text::file_name;
 
-/// The width of a question.
 const WIDTH: f32 = 440.0;
 
 pub(super) fn unsaved_ui(ui: &mut Ui, after: &After) -> Option<End> {

@@ -34,7 +34,6 @@ pub(crate) struct Dialled {
     pub(crate) wish: DialWish,
 }
 
-/// The figures of the dial.
 #[derive(Clone, Debug)]
 pub(crate) struct DialFigures {
     pub(crate) of: Dialled,
@@ -61,7 +60,6 @@ impl Dialled {
         self.wish.refined.map_or(*settings, |samples| settings.refined_to(samples))
     }
 
-    /// Returns the settings of all pictures.
     fn all(&self) -> Vec<Settings> {
         let presets = of_dial(&self.models, self.wish.refined).map(|(_, settings)| settings);
         let mut all: Vec<Settings> = presets.collect();

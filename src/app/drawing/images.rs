@@ -53,7 +53,6 @@ fn show(picture: &Picture, image: &mut ColorImage) {
     bytes.copy_from_slice(picture.pixels());
 }
 
-/// Returns the picture that an image of the viewport shows.
 pub(crate) fn picture(image: &ColorImage) -> Option<Picture> {
     let [width, height] = image.size;
     let pixels: &[[u8; 4]] = bytemuck::cast_slice(&image.pixels);

@@ -18,7 +18,6 @@ pub enum Shrink {
 }
 
 impl Shrink {
-    /// All factors.
     const ALL: [Self; 3] = [Self::Whole, Self::Half, Self::Quarter];
 
     /// Returns the side, in pixels, of the square that shows one drawn pixel.

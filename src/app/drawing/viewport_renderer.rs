@@ -24,7 +24,6 @@ use marraztu_render::plan_frame;
 use marraztu_render::screen::coverage::PixelBox;
 use marraztu_render::{Cancelled, Damage, FramePlan, Hit, Renderer};
 
-/// A drawn picture.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Drawn {
     #[serde(with = "super::images::without_pixels")]
@@ -32,7 +31,6 @@ pub(crate) struct Drawn {
     /// The time from the snapshot to the finished picture in memory.
     pub(crate) time: Duration,
     pub(crate) triangles: usize,
-    /// The reduction of its quality.
     pub(crate) reduction: Reduction,
     /// The measured error of that reduction, in steps of a byte.
     pub(crate) lost: Option<f64>,

@@ -209,12 +209,10 @@ impl Elsewhere {
         self.job.take().map(|job| job.written())
     }
 
-    /// Returns whether the result is awaited.
     pub(crate) const fn is_awaited(&self) -> bool {
         self.answers.is_some()
     }
 
-    /// Takes the end of the job.
     pub(crate) fn end(&mut self, end: &[u8]) {
         if let Some(answers) = self.answers.take() {
             answers.end(end);

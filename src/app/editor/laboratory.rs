@@ -161,7 +161,6 @@ fn command(state: &State, size: Size, thoroughness: &Thoroughness) -> String {
 }
 
 impl App {
-    /// Answers a request to the laboratory.
     pub(crate) fn answer_lab(&mut self, ctx: &Context, ask: LabRequest) {
         let lab = &mut self.state.lab;
         match ask {
@@ -246,7 +245,6 @@ impl App {
         }
     }
 
-    /// Starts to measure the suite.
     fn measure_suite(&mut self, ctx: &Context, detail: SuiteDetail) {
         if self.lab.is_measuring() {
             return;
@@ -283,7 +281,6 @@ impl App {
         }
     }
 
-    /// Shows the reports of the suite.
     fn hear_suite(&mut self, ctx: &Context) {
         let Some(task) = &self.lab.suite else { return };
         match task.outcome() {

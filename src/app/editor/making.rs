@@ -138,7 +138,6 @@ impl App {
         self.make(ctx, Order { path, content: Content::Drawn(choices) });
     }
 
-    /// Begins to export the scene.
     pub(crate) fn export_scene(&mut self, ctx: &Context, path: PathBuf) {
         self.make(ctx, Order { path, content: Content::Exported });
     }

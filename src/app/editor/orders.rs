@@ -20,7 +20,6 @@ pub(super) struct Order {
     pub(super) content: Content,
 }
 
-/// The content of a file.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) enum Content {
     /// A picture, or a turntable.

@@ -339,7 +339,6 @@ impl App {
         }
     }
 
-    /// Changes the view.
     pub(crate) fn show_view(&mut self, view: View) {
         self.state.message = None;
         self.state.view = view;
@@ -410,7 +409,6 @@ impl App {
     }
 }
 
-/// Answers a request about keys.
 fn answer_keys(ctx: &Context, request: KeyRequest) {
     let mut keymap = Keymap::clone(&Keyboard::keymap(ctx));
     match request {

@@ -98,7 +98,6 @@ impl App {
         });
     }
 
-    /// Shows an opened scene.
     pub(crate) fn take_scene(&mut self, ctx: &Context, opening: Opening) {
         let Opening { path, result } = opening;
         match result {

@@ -94,7 +94,6 @@ impl Action {
     }
 }
 
-/// Returns the name of the first key of an action.
 pub(crate) fn first_key(ui: &Ui, action: Action) -> Option<String> {
     Keyboard::keymap(ui.ctx()).keys(action).first().map(|key| key.name())
 }
@@ -113,7 +112,6 @@ pub(crate) fn action_switch(ui: &mut Ui, state: &State, requests: &mut Requests,
     }
 }
 
-/// Shows the icon button of an action.
 pub(crate) fn action_icon(
     ui: &mut Ui,
     state: &State,

@@ -47,7 +47,6 @@ pub(crate) struct Keyboard {
     /// Whether an Esc was held back since the last query.
     held_escape: bool,
     keymap: Arc<Keymap>,
-    /// The pasted text.
     pasted: Option<String>,
     /// Whether the text of the clipboard was requested from the window.
     asks_paste: bool,
@@ -224,7 +223,6 @@ impl Keyboard {
     }
 }
 
-/// Returns the key of a clipboard event.
 const fn clipboard_key(event: &Event) -> Option<Key> {
     match event {
         Event::Cut => Some(Key::X),

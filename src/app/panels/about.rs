@@ -19,7 +19,6 @@ const INSTALLATION: &str = include_str!("../../../docs/install.md");
 
 const SIZE: egui::Vec2 = vec2(460.0, 460.0);
 
-/// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, _state: &State, requests: &mut Requests) {
     let mut open = true;
     let room = ui.ctx().content_rect().size() - vec2(80.0, 120.0);

@@ -18,7 +18,6 @@ pub(crate) struct Arrangement {
     places: Places,
 }
 
-/// Shows the contents of a panel and adds its requests.
 type Contents = fn(&mut Ui, &State, &mut Requests);
 
 macro_rules! contents {

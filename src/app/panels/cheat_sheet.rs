@@ -16,7 +16,6 @@ const KEYS: f32 = 170.0;
 const LABEL: f32 = 150.0;
 const NOW: f32 = 36.0;
 
-/// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let mut open = true;
     let room = ui.ctx().content_rect().size() - vec2(80.0, 120.0);

@@ -19,7 +19,6 @@ use crate::app::widgets::regions;
 use marraztu_core::accuracy::{ACCURACY_PRESETS, AccuracyPreset, Settings};
 use marraztu_lab::dial::{Figures, error_in_words, in_words};
 
-/// The width of the contents.
 const WIDTH: f32 = 216.0;
 
 /// The right ends of the columns of time and error.
@@ -34,7 +33,6 @@ const UNFOLDED: f32 = 300.0;
 /// Over a lower picture, the dial is one row until it is clicked.
 const LOW: f32 = 400.0;
 
-/// Shows the dial; its requests are added to `requests`.
 pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Requests) {
     let is_small = picture.width() < LEAST.x || picture.height() < LEAST.y;
     // A comparison has its own labels there.
@@ -135,7 +133,6 @@ fn head_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     }
 }
 
-/// A row of the dial.
 struct Row {
     label: &'static str,
     hint: String,

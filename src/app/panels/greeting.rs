@@ -33,7 +33,6 @@ const LEAST_FOR_THUMBNAILS: Vec2 = vec2(640.0, 500.0);
 /// The size of a thumbnail in points: half of its pixels.
 const THUMBNAIL: Vec2 = vec2(144.0, 90.0);
 
-/// Shows the greeting; its requests are added to `requests`.
 pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Requests) {
     let is_small = picture.size().min_elem() < LEAST_SIDE || picture.area() < LEAST_AREA;
     if !state.greeting || !state.overlays || is_small {

@@ -6,13 +6,11 @@ use crate::app::actions::{Action, Request, Requests};
 use crate::app::panels::Panel;
 use crate::app::state::State;
 
-/// The default width.
 const WIDTH: f32 = 240.0;
 
 /// The number of visible steps; the others are scrolled to.
 const ROWS: f32 = 14.0;
 
-/// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let mut open = true;
     let picture = ui.max_rect();

@@ -19,7 +19,6 @@ use marraztu_io::{EXAMPLES, lessons};
 /// The actions of [`Group::Window`] in the submenu for themes.
 const THEMES: [Action; 3] = [Action::ThemeSystem, Action::ThemeLight, Action::ThemeDark];
 
-/// The actions in the Help menu.
 const HELP: [Action; 4] = [
     Action::Palette,
     Action::Panel(Panel::CheatSheet),
@@ -62,7 +61,6 @@ const OPENS: [Action; 4] = [Action::New, Action::NewAncestor, Action::Open, Acti
 /// The actions that scale the interface.
 const SIZES: [Action; 3] = [Action::LargerText, Action::SmallerText, Action::NormalText];
 
-/// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     MenuBar::new().ui(ui, |ui| {
         ui.spacing_mut().button_padding.x = 8.0;

@@ -191,7 +191,6 @@ fn notice_ui(ui: &mut Ui, at: usize, notice: &Notice, state: &State, requests: &
     }
 }
 
-/// Returns the request that accepts an offer.
 fn accepted(offer: Offer, state: &State) -> Option<Request> {
     let gesture = Gesture::Whole;
     match offer.command(&state.scene, &state.view) {

@@ -43,7 +43,6 @@ struct Entry {
 /// The height of an entry.
 const ENTRY: f32 = theme::ROW + 2.0;
 
-/// Shows the palette; its requests are added to `requests`.
 pub(crate) fn show(ui: &Ui, state: &State, requests: &mut Requests) {
     let id = Id::unique("palette");
     let room = ui.ctx().content_rect().size();
@@ -231,7 +230,6 @@ fn materials(state: &State, search: &mut Search, entries: &mut Vec<Entry>) {
     }
 }
 
-/// Creates a change of the selected objects.
 fn of_objects(state: &State, id: ObjectId, label: String, change: impl Fn(&mut Object)) -> Request {
     of_selected(state, label, items::change_object(&state.scene, id, change))
 }

@@ -28,7 +28,6 @@ const BUTTONS: f32 = 76.0;
 /// The height of the axes of the world above the window.
 const AXES: f32 = 90.0;
 
-/// Shows the window; its requests are added to `requests`.
 pub(crate) fn show(ctx: &Context, state: &State, picture: Rect, requests: &mut Requests) {
     let Some(pixel) = &state.explained else { return };
     let mut open = true;

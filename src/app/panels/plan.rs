@@ -20,7 +20,6 @@ use crate::app::widgets::text::grouped;
 use marraztu_lab::cost::{Explained, Group};
 use marraztu_render::{Effect, EffectUse};
 
-/// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let Some(explained) = state.plan.explained.clone() else {
         ui.add(egui::Label::new("The plan appears with the next picture.").wrap());

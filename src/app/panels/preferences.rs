@@ -20,7 +20,6 @@ use marraztu_io::{Preferences, Theme};
 
 const SIZE: egui::Vec2 = vec2(480.0, 470.0);
 
-/// The width of the labels.
 const LABEL: f32 = 150.0;
 
 /// A remembered value.
@@ -239,7 +238,6 @@ pub(crate) fn now(ctx: &egui::Context, state: &State, before: Option<[f32; 2]>) 
     }
 }
 
-/// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let mut open = true;
     let room = ui.ctx().content_rect().size() - vec2(80.0, 120.0);

@@ -27,7 +27,6 @@ const BETWEEN: &str = "  |  ";
 /// Longer names are elided in the middle.
 const LONGEST_NAME: usize = 28;
 
-/// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);

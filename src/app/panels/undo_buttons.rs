@@ -23,7 +23,6 @@ const HOLD: f64 = 0.35;
 /// The number of visible steps; the others are scrolled to.
 const ROWS: f32 = 14.0;
 
-/// The width of the list.
 const WIDTH: f32 = 240.0;
 
 /// A step of the list: its index in the history, and the position of the history after undoing or

@@ -17,7 +17,6 @@ use marraztu_core::scene::{
     CameraMode, Command, Frame, Normals, Observer, Projection, Subject, Transformation, View,
 };
 
-/// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let area = ScrollArea::vertical().id_salt("view switches").auto_shrink(false);
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {

@@ -274,7 +274,6 @@ impl State {
         name.map(|name| name.to_string_lossy().into_owned())
     }
 
-    /// Returns the file of the only model.
     fn only_model(&self) -> Option<&Path> {
         let mut objects = self.scene.objects.iter();
         let model = objects.next().and_then(|(_, object)| object.model.source.as_deref());

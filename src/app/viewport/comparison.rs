@@ -93,7 +93,6 @@ impl Comparison {
         (self.drawn, self.exact, self.error, self.current) = (None, None, None, false);
     }
 
-    /// Shows a new pair.
     pub(crate) fn take(&mut self, ctx: &Context, drawn: Box<Pair>) {
         load(ctx, &mut self.exact, "exact", &drawn.exact);
         self.error = None;

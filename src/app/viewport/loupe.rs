@@ -27,7 +27,6 @@ const LINE: f32 = 16.0;
 /// Returns the colour of a pixel of the window, by column and row, if it is known.
 type PixelColor<'a> = dyn Fn(i32, i32) -> Option<[u8; 4]> + 'a;
 
-/// The state of the loupe.
 #[derive(Debug, Default)]
 pub(super) struct Loupe {
     /// The window that was requested last.
@@ -42,7 +41,6 @@ impl Loupe {
         (self.asked, self.ideal) = (None, None);
     }
 
-    /// Takes a window of the ideal.
     pub(super) fn take(&mut self, window: PixelBox, picture: Picture) {
         self.ideal = Some((window, picture));
     }

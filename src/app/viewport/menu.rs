@@ -37,7 +37,6 @@ impl Viewport {
 /// The menu of the background; the lights to add follow it.
 const ON_NOTHING: &[Action] = &[Action::FrameAll, Action::Load, Action::AddCamera];
 
-/// Returns the menu of an item.
 const fn actions_on(item: ItemId) -> &'static [Action] {
     match item {
         ItemId::Object(_) => &[
@@ -80,7 +79,6 @@ const fn actions_on(item: ItemId) -> &'static [Action] {
     }
 }
 
-/// Returns the id of the menu.
 pub(super) fn id() -> Id {
     Id::unique("viewport menu")
 }

@@ -38,7 +38,6 @@ use marraztu_render::Hit;
 use mouse::{Mouse, Under};
 use over::Over;
 
-/// The purpose of a pick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Purpose {
     /// Finds the item under the pointer.
@@ -111,7 +110,6 @@ impl Viewport {
         self.place.map(|(rect, _)| rect)
     }
 
-    /// Returns the image on screen.
     pub(crate) fn image(&self) -> Option<&Arc<ColorImage>> {
         self.image.as_ref()
     }
@@ -181,7 +179,6 @@ impl Viewport {
         }
     }
 
-    /// Shows the picture in all of `ui`.
     pub(crate) fn ui(
         &mut self,
         ui: &Ui,
@@ -248,7 +245,6 @@ impl Viewport {
         self.menu_ui(ui, state, requests);
     }
 
-    /// Shows the loupe at the pointer.
     fn loupe_ui(&mut self, ui: &Ui, state: &State, response: &Response, worker: &Worker<Purpose>) {
         let Some(pointer) = response.hover_pos().filter(|_| state.loupe) else { return };
         let at = self.pixel(pointer);

@@ -101,11 +101,8 @@ pub(crate) fn fact(ui: &mut Ui, label: &str, value: &str) {
 /// A switch with a tick, as wide as the panel.
 #[derive(Clone, Debug)]
 pub(crate) struct Switch<'a> {
-    /// Its label.
     pub(crate) label: &'a str,
-    /// Its key, if any.
     pub(crate) key: Option<String>,
-    /// Whether it is on.
     pub(crate) on: bool,
     /// Whether it can be clicked.
     pub(crate) enabled: bool,
@@ -159,7 +156,6 @@ fn tick_box(ui: &Ui, rect: Rect, on: bool, enabled: bool) {
     painter.rect_stroke(rect, 3.0, line, StrokeKind::Inside);
 }
 
-/// Returns the width of a key cap.
 pub(crate) fn key_width(ui: &Ui, key: &str) -> f32 {
     let font = TextStyle::Monospace.resolve(ui.style());
     let galley = ui.painter().layout_no_wrap(key.to_owned(), font, Color32::WHITE);
@@ -185,13 +181,10 @@ pub(crate) fn key_cap(ui: &Ui, at: egui::Pos2, key: &str, enabled: bool) -> f32 
 /// One of several options that exclude one another.
 #[derive(Clone, Debug)]
 pub(crate) struct Choice<'a> {
-    /// Its name.
     pub(crate) label: &'a str,
     /// Its name for screen readers.
     pub(crate) name: String,
-    /// The key that chooses it.
     pub(crate) key: Option<String>,
-    /// Whether it is chosen.
     pub(crate) on: bool,
     /// The reason why it cannot be chosen, if any.
     pub(crate) refused: Option<String>,

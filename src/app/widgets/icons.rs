@@ -10,17 +10,13 @@ use marraztu_core::scene::{ItemId, Light, Scene};
 pub(crate) struct Icon(&'static str);
 
 impl Icon {
-    /// An object.
     pub(crate) const OBJECT: Self = Self("\u{f720}");
-    /// A part of an object.
     pub(crate) const PART: Self = Self("\u{e86b}");
-    /// A camera.
     pub(crate) const CAMERA: Self = Self("\u{e04b}");
     /// Visible.
     pub(crate) const EYE: Self = Self("\u{e8f4}");
     /// Hidden.
     pub(crate) const EYE_CLOSED: Self = Self("\u{e8f5}");
-    /// Locked.
     pub(crate) const LOCK: Self = Self("\u{e899}");
     /// Not locked.
     pub(crate) const LOCK_OPEN: Self = Self("\u{e898}");
@@ -36,19 +32,12 @@ impl Icon {
     pub(crate) const PEN: Self = Self("\u{f097}");
     /// Delete.
     pub(crate) const BIN: Self = Self("\u{e92e}");
-    /// Undo.
     pub(crate) const UNDO: Self = Self("\u{e166}");
-    /// Redo.
     pub(crate) const REDO: Self = Self("\u{e15a}");
-    /// Search.
     pub(crate) const SEARCH: Self = Self("\u{ef7a}");
-    /// The loupe.
     pub(crate) const LOUPE: Self = Self("\u{e8ff}");
-    /// Up.
     pub(crate) const UP: Self = Self("\u{e316}");
-    /// Down.
     pub(crate) const DOWN: Self = Self("\u{e313}");
-    /// To the left.
     pub(crate) const LEFT: Self = Self("\u{e314}");
     /// To the right, or folded.
     pub(crate) const RIGHT: Self = Self("\u{e315}");
@@ -62,10 +51,8 @@ impl Icon {
     pub(crate) const LIST: Self = Self("\u{e896}");
     /// The switches of the view.
     pub(crate) const SWITCHES: Self = Self("\u{e9f6}");
-    /// The properties.
     pub(crate) const PROPERTIES: Self = Self("\u{e429}");
 
-    /// Returns the icon of an item.
     pub(crate) fn of(scene: &Scene, id: ItemId) -> Self {
         match id {
             ItemId::Object(_) => Self::OBJECT,

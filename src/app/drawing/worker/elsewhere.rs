@@ -126,7 +126,6 @@ fn dialled(snapshot: &Snapshot) -> Option<Dialled> {
 }
 
 impl Drawn {
-    /// Adds the pixels of a picture of a message.
     fn with_pixels(mut self, pictures: &mut Pictures<'_>) -> Option<Self> {
         let size = self.image.size;
         let pixels = bytemuck::pod_collect_to_vec(pictures.take(size)?);

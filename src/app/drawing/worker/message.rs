@@ -16,7 +16,6 @@ use marraztu_lab::dial::Figures;
 use marraztu_render::Hit;
 use marraztu_render::screen::coverage::PixelBox;
 
-/// The requests of a window.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub(super) struct Request {
     pub(super) picks: Vec<[usize; 2]>,

@@ -200,7 +200,6 @@ impl<P: Copy + Send + 'static> Worker<P> {
         self.shared.lock().begun.map(|begun| begun.elapsed())
     }
 
-    /// Returns the last snapshot requested.
     pub(crate) const fn last(&self) -> Option<&Snapshot> {
         self.last.as_ref()
     }

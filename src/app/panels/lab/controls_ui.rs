@@ -17,7 +17,6 @@ use marraztu_lab::picture_source::Reference;
 use marraztu_lab::report::{Budgets, Report, brief, capitalized, tabs};
 use marraztu_lab::suite::SuiteDetail;
 
-/// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let area = ScrollArea::vertical().id_salt("what the laboratory is asked").auto_shrink(false);
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {

@@ -31,7 +31,6 @@ const HALF_WIDE: f32 = 760.0;
 /// The share of the width for the verdict next to a plot.
 const BESIDE: f32 = 0.42;
 
-/// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let whole = ui.available_rect_before_wrap();
     if whole.width() < WIDE {
@@ -77,7 +76,6 @@ enum Part {
 }
 
 impl Part {
-    /// Returns the parts of a panel of this width.
     const fn all(width: f32) -> &'static [Self] {
         if width < HALF_WIDE {
             &[Self::Options, Self::Verdict, Self::Plot, Self::Table]

@@ -48,7 +48,6 @@ pub(crate) fn verdict_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     }
 }
 
-/// Shows a plot; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let Some(report) = state.lab.shown() else {
         return empty_ui(ui, state);

@@ -14,7 +14,6 @@ use marraztu_lab::picture_source::Reference;
 use marraztu_lab::report::{Report, brief, heading, left_out_in_words};
 use marraztu_lab::sweep::{Measured, Row, TOO_BUSY, Verdict};
 
-/// A column of the table.
 struct Column {
     heading: &'static str,
     hint: &'static str,
@@ -85,7 +84,6 @@ fn ratio(ratio: f64) -> String {
     }
 }
 
-/// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let Some(report) = state.lab.shown() else {
         ui.weak("Nothing has been measured yet.");
@@ -145,7 +143,6 @@ struct Place {
     is_stop: bool,
 }
 
-/// Returns the cell of a column in a row.
 fn cell(row: Rect, column: usize) -> Rect {
     let before: f32 = COLUMNS[..column].iter().map(|column| column.share).sum();
     let left = row.left() + (NAMES + before) * row.width();

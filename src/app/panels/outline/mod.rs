@@ -23,7 +23,6 @@ use marraztu_core::scene::{ItemId, ObjectId, Subject};
 pub(super) use order::place;
 use order::reorder;
 
-/// A line of the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Line {
     /// The heading of a list.
@@ -34,7 +33,6 @@ enum Line {
     Part(ObjectId, u32),
 }
 
-/// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let all = ui.available_rect_before_wrap();
     let tools = all.with_min_y((all.bottom() - theme::ROW).max(all.top()));

@@ -80,7 +80,6 @@ pub(crate) fn item_ui(ui: &mut Ui, state: &State, requests: &mut Requests, row: 
     fold_ui(ui, state, row, unfolded, color)
 }
 
-/// Returns whether a file of an item is missing.
 fn is_missing(scene: &Scene, item: ItemId) -> bool {
     match item {
         ItemId::Object(id) => {

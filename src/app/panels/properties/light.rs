@@ -166,7 +166,6 @@ impl Shown<'_> {
         }
     }
 
-    /// Shows the numbers of its kind.
     fn numbers_ui(&self, ui: &mut Ui, requests: &mut Requests) {
         for (row, now) in self.light.kind.numbers() {
             let number = Number::new(row.name, row.hint).speed(row.speed);

@@ -22,7 +22,6 @@ use crate::app::widgets::text::file_name;
 use marraztu_core::edit;
 use marraztu_core::scene::{ItemId, Transformation};
 
-/// Shows the panel; its requests are added to `requests`.
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let Some(item) = state.selected().filter(|item| state.scene.contains(*item)) else {
         ui.add_space(theme::GAP);

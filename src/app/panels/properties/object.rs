@@ -241,7 +241,6 @@ fn object_turn(degrees: DVec3) -> DMat3 {
     })
 }
 
-/// Shows the numbers of the model.
 fn model_ui(ui: &mut Ui, object: &Object) {
     let model = &object.model;
     let mesh = &model.mesh;

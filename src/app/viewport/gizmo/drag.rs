@@ -88,7 +88,6 @@ impl Grab {
         Some(grab)
     }
 
-    /// Returns the handle.
     pub(crate) const fn handle(&self) -> Handle {
         self.handle
     }

@@ -28,7 +28,6 @@ impl Mouse {
         self.grab.is_some()
     }
 
-    /// Returns the selection box in progress.
     pub(crate) fn selection_box(&self) -> Option<Rect> {
         let drag = self.drag.filter(|drag| drag.motion == Motion::Box && drag.moved && !drag.over);
         drag.map(|drag| Rect::from_two_pos(drag.from, drag.to))
