@@ -100,12 +100,7 @@ impl Search {
 impl Action {
     /// Returns the score of the action: by one of its keys, spelled exactly, by its label, or by
     /// synonyms.
-    pub fn score(self, search: &mut Search, query: &str) -> Option<u32> {
-        self.score_on(self.info().keys, search, query)
-    }
-
-    /// Works as [`Self::score`], for an action with other keys.
-    pub(crate) fn score_on(self, keys: &[Chord], search: &mut Search, query: &str) -> Option<u32> {
+    pub(crate) fn score(self, keys: &[Chord], search: &mut Search, query: &str) -> Option<u32> {
         let info = self.info();
         let query = query.trim();
         let mut keys = keys.iter().flat_map(|key| key.names());
@@ -132,7 +127,9 @@ mod tests {
         let mut search = Search::new(query);
         let mut found: Vec<(u32, Action)> = Action::ALL
             .iter()
-            .filter_map(|action| Some((action.score(&mut search, query)?, *action)))
+            .filter_map(|action| {
+                Some((action.score(action.info().keys, &mut search, query)?, *action))
+            })
             .collect();
         found.sort_by_key(|(score, _)| std::cmp::Reverse(*score));
         found.into_iter().map(|(_, action)| action).collect()

@@ -7,8 +7,7 @@ use crate::app::state::State;
 use marraztu_core::accuracy::AccuracyPreset;
 use marraztu_core::edit::lights;
 use marraztu_core::scene::{
-    CameraMode, Fill, Frame, ItemId, NormalLength, Normals, Observer, Projection, Subject,
-    Transformation,
+    CameraMode, Fill, Frame, NormalLength, Normals, Observer, Projection, Subject, Transformation,
 };
 
 /// The switches of the lights, in the order of their keys.
@@ -63,11 +62,7 @@ impl Action {
                 Subject::Object => view.frame == Frame::Global,
                 Subject::Light => false,
             },
-            Self::ToggleVisible => match state.selected()? {
-                ItemId::Object(id) => scene.objects.get(id)?.visible,
-                ItemId::Camera(id) => scene.cameras.get(id)?.visible,
-                ItemId::Light(id) => scene.lights.get(id)?.on,
-            },
+            Self::ToggleVisible => state.is_shown(state.selected()?)?,
             Self::ToggleLocked => scene.locked.contains(&state.selected()?),
             Self::ToggleEdges => view.fill == Fill::Edges,
             Self::ToggleEdgesOverFill => view.edges_over_fill,

@@ -95,7 +95,7 @@ impl App {
         let Some((path, loaded)) = dialog.loaded else {
             let model = io::cam_model();
             let command = items::insert_camera(&self.state.scene, model, material);
-            self.add(command, Subject::Camera, "Add a camera");
+            self.add_all(command, Subject::Camera, "Add a camera");
             return;
         };
         if loaded.model.options == options && texture.is_none() {
@@ -362,13 +362,8 @@ impl App {
         }
     }
 
-    /// Replaces the edited scene; the open panels stay.
-    pub(crate) fn replace(&mut self, state: State) {
-        self.swap(state);
-    }
-
-    /// Replaces the scene as [`Self::replace`] does; returns the old state.
-    pub(crate) fn swap(&mut self, state: State) -> State {
+    /// Replaces the edited scene; the open panels stay. Returns the old state.
+    pub(crate) fn replace(&mut self, state: State) -> State {
         // Background work for the old scene is of no use for the new one.
         self.end_measuring();
         self.comparison.forget();

@@ -209,6 +209,11 @@ impl Elsewhere {
         self.job.take().map(|job| job.written())
     }
 
+    /// Returns whether another instance does the job now.
+    pub(super) const fn is_taken(&self) -> bool {
+        self.job.is_none() && self.answers.is_some()
+    }
+
     pub(crate) const fn is_awaited(&self) -> bool {
         self.answers.is_some()
     }

@@ -418,7 +418,7 @@ impl App {
                 state.lab.away = true;
                 state.lab.costs.clone_from(&self.state.lab.costs);
                 // A lesson opened from a lesson keeps the user's scene, not the lesson's.
-                let own = self.swap(state);
+                let own = self.replace(state);
                 if !own.lab.away {
                     self.waiting_scene = Some(Box::new(own));
                 }
@@ -435,7 +435,7 @@ impl App {
         let Some(mut own) = self.waiting_scene.take() else { return };
         own.lab.costs = std::mem::take(&mut self.state.lab.costs);
         own.tell(Some("Back in your scene".to_owned()));
-        self.swap(*own);
+        self.replace(*own);
     }
 }
 

@@ -34,7 +34,7 @@ use std::time::Duration;
 
 use egui::{Context, Event, UiBuilder, ViewportCommand};
 
-use crate::app::actions::{Action, Requests};
+use crate::app::actions::Requests;
 use crate::app::documents::dialogs::Dialogs;
 #[cfg(feature = "desktop")]
 use crate::app::documents::dialogs::Parent;
@@ -239,7 +239,7 @@ impl App {
         }
         // The dialogs come last, over everything else.
         let answer = self.dialogs.ui(&ctx);
-        let pressed = Action::pressed(&ctx);
+        let pressed = Keyboard::take(&ctx);
 
         // Requests are answered last, so everything in a frame shows the same scene.
         if !requests.is_empty() || !pressed.is_empty() || answer.is_some() {

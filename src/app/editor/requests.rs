@@ -23,7 +23,7 @@ use crate::app::state::{Message, Offer, State, Tone};
 use marraztu_core::edit::selection::{self, Selection};
 use marraztu_core::edit::several::Others;
 use marraztu_core::edit::{Gesture, GesturePhase, Selected, aiming, items, lights};
-use marraztu_core::scene::{Command, ItemId, Subject, View};
+use marraztu_core::scene::{Command, ItemId, View};
 use marraztu_io::is_example;
 
 impl App {
@@ -350,13 +350,6 @@ impl App {
             self.navigate(command, gesture);
         }
         self.show_view(selection.view);
-    }
-
-    /// Adds an item and makes its kind the subject.
-    pub(crate) fn add(&mut self, command: Command, subject: Subject, label: &str) {
-        self.change_then(command, Gesture::Whole, label, |state| {
-            selection::set_subject(&mut state.view, subject);
-        });
     }
 
     /// Changes the scene. Every change except undo and redo ends here.

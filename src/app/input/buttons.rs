@@ -2,20 +2,15 @@
 //!
 //! Their tooltips say what the action does, which key it has, and why it is not available now.
 
-use egui::{Atom, Context, IdSalt, Response, RichText, Role, Ui, WidgetInfo};
+use egui::{Atom, IdSalt, Response, RichText, Role, Ui, WidgetInfo};
 
-use super::keyboard::{Keyboard, Press};
+use super::keyboard::Keyboard;
 use crate::app::actions::{Action, Requests};
 use crate::app::state::State;
 use crate::app::widgets::controls::{Choice, Switch, icon_button};
 use crate::app::widgets::icons::Icon;
 
 impl Action {
-    /// Takes the key presses of this frame, in order.
-    pub fn pressed(ctx: &Context) -> Vec<Press> {
-        Keyboard::take(ctx)
-    }
-
     /// Shows a button for the action. Returns the action if it was clicked.
     pub fn button(self, ui: &mut Ui, state: &State) -> Option<Self> {
         self.add(ui, state, egui::Button::new(self.info().label))

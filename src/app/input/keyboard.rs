@@ -18,13 +18,13 @@ use marraztu_core::edit::Gesture;
 
 /// A key press that triggers an action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Press {
+pub(crate) struct Press {
     /// The action.
-    pub action: Action,
+    pub(crate) action: Action,
     /// The key.
-    pub chord: Chord,
+    pub(crate) chord: Chord,
     /// The gesture. It lasts from the press of a key to its release.
-    pub gesture: Gesture,
+    pub(crate) gesture: Gesture,
 }
 
 /// Reads the keys of one [`Context`].

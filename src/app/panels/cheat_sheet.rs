@@ -74,7 +74,7 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Requests) {
         for group in Group::ALL {
             let actions: Vec<Action> = group
                 .actions()
-                .filter(|it| it.score_on(keymap.keys(*it), &mut search, &wanted).is_some())
+                .filter(|it| it.score(keymap.keys(*it), &mut search, &wanted).is_some())
                 .collect();
             if actions.is_empty() {
                 continue;

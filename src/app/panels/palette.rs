@@ -148,7 +148,7 @@ fn found(keymap: &Keymap, state: &State, query: &str) -> Vec<Entry> {
     let mut entries = Vec::new();
     for action in Action::ALL.iter().copied().filter(|action| *action != Action::Palette) {
         let keys = keymap.keys(action);
-        let Some(score) = action.score_on(keys, &mut search, query) else { continue };
+        let Some(score) = action.score(keys, &mut search, query) else { continue };
         let info = action.info();
         entries.push(Entry {
             label: info.label.to_owned(),

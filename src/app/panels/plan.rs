@@ -266,12 +266,8 @@ impl Row<'_> {
         disk_ui(ui, pos2(disk, middle), self.on);
         let put = |rect: Rect, left: f32, text: &str, color: Color32| {
             let rect = rect.with_min_x(left);
-            controls::put_text(
-                ui,
-                rect,
-                controls::text(ui, text, TextStyle::Body, rect.width()),
-                color,
-            );
+            let text = controls::text(ui, text, TextStyle::Body, rect.width());
+            controls::put_text(ui, rect, text, color);
         };
         put(columns.name, mark + 16.0, self.name, color);
         put(columns.on, columns.on.left() + self.indent, self.things, color);

@@ -145,7 +145,7 @@ impl CanvasShell {
     }
 
     /// Returns whether the result of a job of a kind is awaited. If not, the host may stop it.
-    pub const fn awaits(&self, kind: JobKind) -> bool {
+    pub fn awaits(&self, kind: JobKind) -> bool {
         match kind {
             JobKind::Measure => self.app.lab.elsewhere.is_awaited(),
             JobKind::Make => self.app.making.is_elsewhere(),

@@ -209,6 +209,15 @@ impl State {
             || self.several.of(&self.scene, &self.view).any(|other| other == id)
     }
 
+    /// Returns whether an object or a camera's mark is drawn, or a light is on.
+    pub(crate) fn is_shown(&self, id: ItemId) -> Option<bool> {
+        Some(match id {
+            ItemId::Object(id) => self.scene.objects.get(id)?.visible,
+            ItemId::Camera(id) => self.scene.cameras.get(id)?.visible,
+            ItemId::Light(id) => self.scene.lights.get(id)?.on,
+        })
+    }
+
     /// Returns whether there are enough items for the outline to have a filter.
     pub fn has_filter(&self) -> bool {
         let Scene { objects, cameras, lights, .. } = &self.scene;

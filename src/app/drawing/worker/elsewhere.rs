@@ -9,7 +9,7 @@ use std::sync::Arc;
 use egui::ColorImage;
 
 use super::message::{Pictures, Reply, Request, Wanted, read, write};
-use super::{Asking, Due, Pick, Shared, Work};
+use super::{Asking, Due, Pick, Shared};
 use crate::app::drawing::dial::{DialFigures, Dialled};
 use crate::app::drawing::snapshot::Snapshot;
 use crate::app::drawing::viewport_renderer::Drawn;
@@ -44,7 +44,7 @@ impl<P> Elsewhere<P> {
         if desk.busy {
             return None;
         }
-        let Due::Now(Work::Asked(asking)) = shared.due(&mut desk) else { return None };
+        let Due::Answer(asking) = shared.due(&mut desk) else { return None };
         drop(desk);
         let Asking { picks, border, ideal, wanted } = *asking;
         let Ok(written) = wanted.as_ref().map(|wanted| self.written(wanted)).transpose() else {

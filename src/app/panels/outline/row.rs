@@ -53,7 +53,7 @@ pub(crate) fn item_ui(ui: &mut Ui, state: &State, requests: &mut Requests, row: 
     ground(ui, state, item, rect, &response);
     response.dnd_set_drag_payload(item);
     take_dragged(ui, state, requests, &response, item);
-    let shown = is_shown(&state.scene, item);
+    let shown = state.is_shown(item).unwrap_or_default();
     let color = ground_color(ui, is_subject, shown);
     let icon = Rect::from_min_size(rect.min + vec2(INDENT, 0.0), vec2(16.0, rect.height()));
     Icon::of(&state.scene, item).paint(ui.painter(), icon, 13.0, color);
@@ -124,15 +124,6 @@ fn ground_color(ui: &Ui, selected: bool, shown: bool) -> Color32 {
         (true, _) => visuals.selection.stroke.color,
         (false, true) => visuals.text_color(),
         (false, false) => visuals.weak_text_color(),
-    }
-}
-
-/// Returns whether an object or a camera's mark is drawn, or a light is on.
-fn is_shown(scene: &Scene, item: ItemId) -> bool {
-    match item {
-        ItemId::Object(id) => scene.objects.get(id).is_some_and(|object| object.visible),
-        ItemId::Camera(id) => scene.cameras.get(id).is_some_and(|camera| camera.visible),
-        ItemId::Light(id) => scene.lights.get(id).is_some_and(|light| light.on),
     }
 }
 
