@@ -6,8 +6,7 @@
 use super::snapshot::{Snapshot, pictured};
 use super::viewport_renderer::Finer;
 use marraztu_core::accuracy::{Samples, Settings, Shot};
-use marraztu_core::base::image::{Picture, Size};
-use marraztu_core::scene::{Scene, View};
+use marraztu_core::base::image::Picture;
 use marraztu_lab::dial::{Dial, Figures, Step, of_dial};
 use marraztu_render::screen::coverage::PixelBox;
 use marraztu_render::{Renderer, plan_frame};
@@ -25,12 +24,9 @@ pub(crate) struct DialWish {
 /// Everything that the figures of the dial depend on.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Dialled {
-    pub(crate) scene: Scene,
-    /// The view, without what the picture does not show.
-    pub(crate) view: View,
-    pub(crate) size: Size,
-    /// The models; all other axes are at their defaults.
-    pub(crate) models: Settings,
+    /// The models, with all other axes at their defaults, and the view without what the picture
+    /// does not show.
+    pub(crate) shot: Shot,
     pub(crate) wish: DialWish,
 }
 
@@ -43,16 +39,11 @@ pub(crate) struct DialFigures {
 }
 
 impl Dialled {
-    pub(crate) fn of(
-        (scene, view): (&Scene, &View),
-        settings: &Settings,
-        size: Size,
-        wish: DialWish,
-    ) -> Self {
-        let models = Settings::default().modelled_as(settings);
-        let own = wish.own.map(|own| own.modelled_as(settings));
-        let wish = DialWish { own, ..wish };
-        Self { scene: scene.clone(), view: pictured(view), size, models, wish }
+    pub(crate) fn of(shot: &Shot, wish: DialWish) -> Self {
+        let own = wish.own.map(|own| own.modelled_as(&shot.settings));
+        let settings = Settings::default().modelled_as(&shot.settings);
+        let shot = Shot { view: pictured(&shot.view), ..shot.with(settings) };
+        Self { shot, wish: DialWish { own, ..wish } }
     }
 
     /// Returns settings as the window shows them at rest.
@@ -61,15 +52,11 @@ impl Dialled {
     }
 
     fn all(&self) -> Vec<Settings> {
-        let presets = of_dial(&self.models, self.wish.refined).map(|(_, settings)| settings);
+        let presets = of_dial(&self.shot.settings, self.wish.refined).map(|(_, settings)| settings);
         let mut all: Vec<Settings> = presets.collect();
         let own = self.wish.own.map(|own| self.at_rest(&own));
         all.extend(own.filter(|own| !all.contains(own)));
         all
-    }
-
-    fn shot(&self) -> Shot {
-        Shot::new(&self.scene, &self.view, &self.models, self.size)
     }
 }
 
@@ -91,10 +78,9 @@ impl IdleDial {
         wanted: &(dyn Fn() -> bool + Sync),
     ) -> Finer {
         let Some(wish) = snapshot.options.dial else { return Finer::Done };
-        let Snapshot { scene, view, settings, options } = snapshot;
-        let of = Dialled::of((scene, view), settings, options.size, wish);
+        let of = Dialled::of(&snapshot.shot, wish);
         if self.of.as_ref() != Some(&of) {
-            self.dial = Some(Dial::new(&of.shot(), &of.all()));
+            self.dial = Some(Dial::new(&of.shot, &of.all()));
             self.of = Some(of.clone());
         }
         let Some(dial) = &mut self.dial else { return Finer::Done };
@@ -116,8 +102,7 @@ impl IdleDial {
         window: PixelBox,
         wanted: &(dyn Fn() -> bool + Sync),
     ) -> Option<Picture> {
-        let Snapshot { scene, view, settings, options } = snapshot;
-        let plan = plan_frame(&Shot::new(scene, view, &settings.ideal(), options.size));
+        let plan = plan_frame(&snapshot.shot.with(snapshot.shot.settings.ideal()));
         self.renderer.render_window(&plan, window, wanted).ok()
     }
 }

@@ -16,7 +16,7 @@ use super::images::present;
 use super::reduction::{Applicable, Reduction};
 use super::refinement::{difference, next_samples};
 use super::snapshot::Snapshot;
-use marraztu_core::accuracy::{Samples, Shot};
+use marraztu_core::accuracy::{Samples, Settings, Shot};
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{ItemId, Surface};
 use marraztu_lab::cost::{self, Explained};
@@ -208,8 +208,8 @@ impl ViewportRenderer {
         let Some(samples) = next_samples(snapshot, self.refined) else {
             return self.dial.step(snapshot, wanted);
         };
-        let settings = marraztu_core::accuracy::Settings { samples, ..snapshot.settings };
-        let shot = Shot::new(&snapshot.scene, &snapshot.view, &settings, snapshot.options.size);
+        let settings = Settings { samples, ..snapshot.shot.settings };
+        let shot = snapshot.shot.with(settings);
         let Ok(changes) = self.finer.redraw(&plan_frame(&shot), wanted) else {
             return Finer::Disturbed;
         };
@@ -229,8 +229,7 @@ impl ViewportRenderer {
         if self.gave_up {
             return None;
         }
-        let (settings, size) = self.shown?.applied(wanted.settings, wanted.options.size);
-        let of = Shot::new(&wanted.scene, &wanted.view, &settings, size);
+        let of = reduced(wanted, self.shown?);
         let explained = cost::explain_with(&mut self.renderer, &of);
         if self.explained.as_deref() == Some(&explained) {
             return None;
@@ -257,8 +256,12 @@ impl ViewportRenderer {
 }
 
 fn planned(wanted: &Snapshot, reduction: Reduction) -> FramePlan {
-    let (settings, size) = reduction.applied(wanted.settings, wanted.options.size);
-    plan_frame(&Shot::new(&wanted.scene, &wanted.view, &settings, size))
+    plan_frame(&reduced(wanted, reduction))
+}
+
+fn reduced(wanted: &Snapshot, reduction: Reduction) -> Shot {
+    let (settings, size) = reduction.applied(wanted.shot.settings, wanted.shot.size);
+    Shot { settings, size, ..wanted.shot.clone() }
 }
 
 /// Returns the part of the picture that is redrawn, from 0 to 1.
@@ -268,11 +271,11 @@ fn share(changes: &Damage) -> f64 {
 }
 
 fn applicable(wanted: &Snapshot) -> Applicable {
-    let textured = wanted.scene.objects.iter().any(|(_, object)| {
+    let textured = wanted.shot.scene.objects.iter().any(|(_, object)| {
         let own = object.model.materials.iter().any(|material| material.texture.is_some());
         object.visible && object.surface != Surface::Material && (own || object.texture.is_some())
     });
-    Applicable { settings: wanted.settings, textured }
+    Applicable { settings: wanted.shot.settings, textured }
 }
 
 impl ViewportRenderer {
@@ -306,7 +309,6 @@ mod tests {
     use crate::app::drawing::border::Run;
     use crate::app::drawing::snapshot::DrawOptions;
     use crate::app::state::Statistics;
-    use marraztu_core::accuracy::Settings;
     use marraztu_core::base::color::Color;
     use marraztu_core::scene::Command;
     use marraztu_io as io;
@@ -314,11 +316,10 @@ mod tests {
     fn snapshot(size: Size) -> Snapshot {
         let (scene, view) = io::default_scene();
         let budget = Duration::from_millis(33);
-        let (settings, moving, explain, outlined) = (Settings::default(), false, false, Vec::new());
-        let (coarse, refined, dial) = (true, None, None);
-        let options =
-            DrawOptions { size, moving, coarse, budget, refined, dial, explain, outlined };
-        Snapshot { scene, view, settings, options }
+        let (moving, coarse, refined, dial, explain) = (false, true, None, None, false);
+        let outlined = Vec::new();
+        let options = DrawOptions { moving, coarse, budget, refined, dial, explain, outlined };
+        Snapshot { shot: Shot::new(&scene, &view, &Settings::default(), size), options }
     }
 
     fn moving(mut snapshot: Snapshot) -> Snapshot {
@@ -329,7 +330,7 @@ mod tests {
     /// Changes the background colour of a snapshot, which requires a full redraw.
     fn recolored(snapshot: &Snapshot, gray: u8) -> Snapshot {
         let mut other = snapshot.clone();
-        Command::Background(Color([gray; 3])).apply(&mut other.scene).unwrap();
+        Command::Background(Color([gray; 3])).apply(&mut other.shot.scene).unwrap();
         other
     }
 
@@ -376,7 +377,7 @@ mod tests {
     #[test]
     fn a_border_runs_round_all_pixels_of_an_item_and_no_others() {
         let wanted = snapshot(Size::new(160, 120));
-        let (size, item) = (wanted.options.size, ItemId::Object(wanted.view.object.unwrap()));
+        let (size, item) = (wanted.shot.size, ItemId::Object(wanted.shot.view.object.unwrap()));
         let mut renderer = ViewportRenderer::new(Instant::now);
         renderer.draw(&wanted, &this).unwrap();
         let places = || (0..size.height).flat_map(|y| (0..size.width).map(move |x| (x, y)));
@@ -405,11 +406,11 @@ mod tests {
         let mut renderer = ViewportRenderer::new(Instant::now);
         let mut wanted = snapshot(Size::new(16, 12));
         assert!(renderer.draw(&wanted, &this).is_some());
-        wanted.view.subject = marraztu_core::scene::Subject::Light;
+        wanted.shot.view.subject = marraztu_core::scene::Subject::Light;
         assert!(renderer.draw(&wanted, &this).is_none());
         wanted.options.moving = true;
         assert!(renderer.draw(&wanted, &this).is_none());
-        wanted.view.back_faces = true;
+        wanted.shot.view.back_faces = true;
         assert!(renderer.draw(&wanted, &this).is_some());
     }
 
@@ -442,7 +443,7 @@ mod tests {
         let mut renderer = ViewportRenderer::new(slow);
         let still = snapshot(Size::new(160, 120));
         renderer.draw(&still, &this).unwrap();
-        let item = ItemId::Object(still.view.object.unwrap());
+        let item = ItemId::Object(still.shot.view.object.unwrap());
         let places = |renderer: &mut ViewportRenderer| {
             let all = (0..120).flat_map(|y| (0..160).map(move |x| [x, y]));
             let own = all.filter(|at| renderer.hit(*at).is_some_and(|hit| hit.item == item));
@@ -487,10 +488,11 @@ mod tests {
         let mut renderer = ViewportRenderer::new(Instant::now);
         let mut wanted = snapshot(Size::new(640, 480));
         renderer.draw(&wanted, &this).unwrap();
-        let (id, _) = wanted.scene.objects.iter().next().unwrap();
+        let (id, _) = wanted.shot.scene.objects.iter().next().unwrap();
         let command =
-            marraztu_core::edit::items::toggle_shown(&wanted.scene, ItemId::Object(id)).unwrap();
-        command.apply(&mut wanted.scene).unwrap();
+            marraztu_core::edit::items::toggle_shown(&wanted.shot.scene, ItemId::Object(id))
+                .unwrap();
+        command.apply(&mut wanted.shot.scene).unwrap();
         let drawn = renderer.draw(&wanted, &this).unwrap();
         assert!((1..40).contains(&drawn.changes.tiles()), "{:?}", drawn.changes);
         let mut fresh = ViewportRenderer::new(Instant::now);

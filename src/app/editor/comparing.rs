@@ -8,11 +8,9 @@ use egui::Context;
 
 use super::App;
 use super::jobs::{Answers, Elsewhere, Job};
-use crate::app::state::State;
 use crate::app::state::laboratory::{Compare, Judged};
 use crate::app::tasks::{Outcome, Task};
 use crate::app::viewport::comparison::{Compared, Drawing, draw};
-use marraztu_core::scene::View;
 use marraztu_io as io;
 
 impl App {
@@ -64,11 +62,9 @@ impl App {
 
     /// Returns the inputs of the comparison; `None` if there is no comparison.
     fn compared_now(&self) -> Option<Compared> {
-        let State { scene, view, settings, lab, .. } = &self.state;
+        let lab = &self.state.lab;
         let size = self.viewport.size().filter(|_| lab.compare != Compare::Off)?;
-        let against = lab.reference;
-        let (scene, view) = (scene.clone(), view.clone());
-        Some(Compared { scene, view, settings: *settings, size, against })
+        Some(Compared { shot: self.state.shot(size), against: lab.reference })
     }
 
     /// Shows a finished pair, unless it belongs to another scene.
@@ -77,7 +73,7 @@ impl App {
         match drawing.task.outcome() {
             Outcome::Running => return,
             Outcome::Done(Some(drawn)) => {
-                let settings = drawn.of.settings;
+                let settings = drawn.of.shot.settings;
                 let judged = Judged { error: drawn.error, settings };
                 let is_now = wanted.is_some_and(|wanted| at_one_time(wanted, &drawn.of));
                 self.state.lab.judged = is_now.then_some(judged);
@@ -95,11 +91,7 @@ impl App {
 
 /// Returns whether both have the same inputs, except for the time.
 fn at_one_time(a: &Compared, b: &Compared) -> bool {
-    let view = View { time: a.view.time, ..b.view.clone() };
-    let Compared { scene, view: _, settings, size, against } = b;
-    a.scene == *scene
-        && a.view == view
-        && a.settings == *settings
-        && a.size == *size
-        && a.against == *against
+    let mut b = b.clone();
+    b.shot.view.time = a.shot.view.time;
+    *a == b
 }

@@ -22,7 +22,7 @@ use crate::app::state::dial::DialState;
 use crate::app::state::{Notice, Offer, Reduction, State};
 use crate::app::tasks::{Outcome, Task};
 use crate::app::widgets::text::file_name;
-use marraztu_core::accuracy::{AccuracyPreset, Settings, Shot};
+use marraztu_core::accuracy::{AccuracyPreset, Settings};
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::edit::{Gesture, items};
@@ -330,14 +330,12 @@ impl App {
 
     /// Returns the picture of the viewport at full quality.
     fn picture(&self) -> Option<Picture> {
-        let State { scene, view, settings, .. } = &self.state;
         if self.shows_all() {
             return self.shown_picture();
         }
-        let samples = self.state.refined_to().unwrap_or(settings.samples);
-        let settings = Settings { samples, ..*settings };
-        let plan = plan_frame(&Shot::new(scene, view, &settings, self.viewport.size()?));
-        Some(Renderer::default().render(&plan).clone())
+        let mut shot = self.state.shot(self.viewport.size()?);
+        shot.settings.samples = self.state.refined_to().unwrap_or(shot.settings.samples);
+        Some(Renderer::default().render(&plan_frame(&shot)).clone())
     }
 
     /// Continues with the user's request after the scene was saved or discarded.

@@ -16,7 +16,6 @@ use crate::app::actions::LabRequest;
 use crate::app::state::State;
 use crate::app::state::laboratory::Compare;
 use crate::app::tasks::{Outcome, Task};
-use marraztu_core::accuracy::Shot;
 use marraztu_core::accuracy::{AXES, Axis};
 use marraztu_core::base::image::Size;
 use marraztu_core::edit::selection;
@@ -198,12 +197,11 @@ impl App {
     /// Starts to measure the picture in the viewport.
     fn sweep(&mut self, ctx: &Context, thoroughness: Thoroughness, axes: Vec<&'static Axis>) {
         let Some(size) = self.viewport.size().filter(|_| !self.lab.is_measuring()) else { return };
-        let State { scene, view, settings, .. } = &self.state;
-        let shot = Shot::new(scene, view, settings, size);
+        let shot = self.state.shot(size);
         // The scene is kept to detect later that the results are out of date.
-        let measured = Some((scene.clone(), view.clone(), size));
+        let measured = Some(shot.clone());
         let only = (axes.len() == 1).then(|| axes[0].key);
-        let question = Question { current: *settings, axes, thoroughness };
+        let question = Question { current: shot.settings, axes, thoroughness };
         let job = if self.draws_elsewhere { Job::sweep(&shot, &question) } else { None };
         // A cancelled sweep may still report findings, so each sweep has a separate cell.
         self.lab.so_far = Arc::default();
@@ -313,9 +311,8 @@ impl App {
     fn explain(&mut self, ctx: &Context, at: [usize; 2]) {
         self.state.lab.picking = false;
         let Some(size) = self.viewport.size() else { return };
-        let State { scene, view, settings, .. } = &self.state;
-        let (mut studio, settings) =
-            (Studio::new(Shot::new(scene, view, settings, size)), *settings);
+        let settings = self.state.settings;
+        let mut studio = Studio::new(self.state.shot(size));
         // The renderer draws the picture again to name the item at the pixel.
         let work = move |_: &io::Progress| {
             let blame = attribute(&mut studio, &settings, at)?;

@@ -379,10 +379,8 @@ impl App {
     /// Requests the picture of the current scene, at reduced quality while it moves.
     fn draw(&mut self, ctx: &Context) {
         let (Some(worker), Some(size)) = (&mut self.worker, self.viewport.size()) else { return };
-        let State { scene, view, settings, .. } = &self.state;
         let coarse = self.state.coarse_while_moving;
         let options = DrawOptions {
-            size,
             moving: false,
             coarse,
             budget: Duration::from_millis(self.state.drawing.budget_ms.into()),
@@ -391,8 +389,7 @@ impl App {
             explain: self.state.panels.has(Panel::Plan),
             outlined: self.state.outlined(),
         };
-        let (scene, view, settings) = (scene.clone(), view.clone(), *settings);
-        let mut wanted = Snapshot { scene, view, settings, options };
+        let mut wanted = Snapshot { shot: self.state.shot(size), options };
         // Input interrupts the refinement, even if the picture does not change.
         let (now, held) = ctx.input(|input| (input.time, input.pointer.any_down()));
         if held || ctx.input(|input| !input.events.is_empty()) {

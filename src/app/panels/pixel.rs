@@ -65,7 +65,7 @@ fn explained_ui(ui: &mut Ui, state: &State, pixel: &ExplainedPixel, explained: &
     if explained.linear {
         ui.weak("Linear light: encoded in sRGB before it is rounded.");
     }
-    let samples = state.refined_to().unwrap_or(pixel.settings.samples);
+    let samples = state.refined_to().unwrap_or(pixel.shot.settings.samples);
     if samples.count() > 1 {
         let count = samples.count();
         ui.weak(format!(
@@ -77,7 +77,7 @@ fn explained_ui(ui: &mut Ui, state: &State, pixel: &ExplainedPixel, explained: &
         diagram_ui(ui, pixel, point, explained);
         ui.separator();
         Grid::new("facts").num_columns(2).spacing(vec2(10.0, 2.0)).show(ui, |ui| {
-            for [name, value] in pixel::facts(&pixel.scene, point) {
+            for [name, value] in pixel::facts(&pixel.shot.scene, point) {
                 ui.weak(name);
                 ui.add(Label::new(mono(value)).wrap());
                 ui.end_row();
@@ -95,7 +95,7 @@ fn buttons_ui(
 ) {
     ui.horizontal(|ui| {
         if ui.button("Copy as text").clicked() {
-            ui.ctx().copy_text(pixel::lines(&pixel.scene, explained).join("\n"));
+            ui.ctx().copy_text(pixel::lines(&pixel.shot.scene, explained).join("\n"));
         }
         if ui.selectable_label(state.explaining, "Another pixel").clicked() {
             requests.push(Request::Do(crate::app::actions::Action::ExplainPixel));
@@ -132,7 +132,7 @@ fn sum_ui(ui: &mut Ui, pixel: &ExplainedPixel, explained: &PixelColor) {
     let strong = ui.visuals().strong_text_color();
     let plain = ui.visuals().text_color();
     term_ui(ui, "in steps of a byte", ["red", "green", "blue"].map(str::to_owned), weak);
-    for term in pixel::rows(&pixel.scene, explained) {
+    for term in pixel::rows(&pixel.shot.scene, explained) {
         let color = if term.value == [0.0; 3] { weak } else { plain };
         term_ui(ui, &term.label, term.value.map(number), color);
     }
@@ -202,7 +202,7 @@ fn diagram_ui(ui: &mut Ui, pixel: &ExplainedPixel, point: &SurfacePoint, explain
     let words = ray.map_or_else(
         || "No light reaches the front of the surface here.".to_owned(),
         |(id, ray)| {
-            let name = pixel::light_name(&pixel.scene, id);
+            let name = pixel::light_name(&pixel.shot.scene, id);
             format!("L and R of {name}: {}", pixel::ray_line(&ray))
         },
     );

@@ -88,9 +88,7 @@ fn summary(explained: &Explained) -> String {
 
 /// Returns whether the measurement belongs to the picture in the viewport.
 fn is_of_now(measured: &Measured, state: &State) -> bool {
-    measured.settings == state.settings
-        && measured.view == state.view
-        && measured.scene == state.scene
+    measured.of == state.shot(measured.of.size)
 }
 
 /// The rectangles of the columns in a row.

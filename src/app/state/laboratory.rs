@@ -4,9 +4,7 @@ use std::collections::BTreeMap;
 
 use super::State;
 use crate::app::drawing::snapshot::pictured;
-use marraztu_core::accuracy::{AXES, Settings};
-use marraztu_core::base::image::Size;
-use marraztu_core::scene::{Scene, View};
+use marraztu_core::accuracy::{AXES, Settings, Shot};
 use marraztu_io::Lesson;
 use marraztu_lab::error::{Error, Measure, Region};
 use marraztu_lab::picture_source::Reference;
@@ -53,8 +51,8 @@ pub struct Laboratory {
     pub away: bool,
     /// The measured effect of each axis, by the axis's key.
     pub costs: BTreeMap<&'static str, AxisCost>,
-    /// The scene, the view and the size that were measured.
-    pub(crate) measured: Option<(Scene, View, Size)>,
+    /// The picture that was measured; other settings do not matter.
+    pub(crate) measured: Option<Shot>,
 }
 
 impl Laboratory {
@@ -79,7 +77,7 @@ impl Laboratory {
 
     /// Returns whether the measured scene, view or size differs from the viewport's.
     pub fn is_stale(&self, state: &State) -> bool {
-        self.measured.as_ref().is_some_and(|(scene, view, size)| {
+        self.measured.as_ref().is_some_and(|Shot { scene, view, size, .. }| {
             let same_view = pictured(&state.view) == pictured(view);
             let same_size = state.statistics.size == *size;
             !same_view || !same_size || *scene != state.scene

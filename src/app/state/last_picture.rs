@@ -3,12 +3,10 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::State;
 use crate::app::drawing::reduction::Reduction;
 use crate::app::drawing::viewport_renderer::Drawn;
-use marraztu_core::accuracy::{Samples, Settings};
+use marraztu_core::accuracy::{Samples, Shot};
 use marraztu_core::base::image::Size;
-use marraztu_core::scene::{Scene, View};
 use marraztu_lab::cost::{Costs, Explained};
 use marraztu_render::{Damage, PixelColor};
 
@@ -75,12 +73,8 @@ pub struct Plan {
 pub struct Measured {
     /// The costs.
     pub costs: Costs,
-    /// The scene.
-    pub scene: Scene,
-    /// The view.
-    pub view: View,
-    /// The settings of accuracy.
-    pub settings: Settings,
+    /// The picture.
+    pub of: Shot,
 }
 
 /// The explanation of a pixel, and the picture that the pixel belongs to.
@@ -88,24 +82,8 @@ pub struct Measured {
 pub struct ExplainedPixel {
     /// Column and row, from the upper left.
     pub at: [usize; 2],
-    /// The scene.
-    pub scene: Scene,
-    /// The view.
-    pub view: View,
-    /// The settings of accuracy.
-    pub settings: Settings,
-    /// The size of the picture.
-    pub size: Size,
+    /// The picture.
+    pub shot: Shot,
     /// The explanation; `None` if the pixel is outside of the picture.
     pub explained: Option<PixelColor>,
-}
-
-impl ExplainedPixel {
-    /// Returns whether the picture is still the one that was explained.
-    pub fn is_of(&self, state: &State, size: Size) -> bool {
-        let Self { scene, view, settings, .. } = self;
-        self.size == size
-            && (settings, view) == (&state.settings, &state.view)
-            && *scene == state.scene
-    }
 }

@@ -19,7 +19,8 @@ use dial::DialState;
 use laboratory::Laboratory;
 pub use last_picture::{ExplainedPixel, Measured, Plan, Statistics};
 use layout::Layout;
-use marraztu_core::accuracy::{Samples, Settings};
+use marraztu_core::accuracy::{Samples, Settings, Shot};
+use marraztu_core::base::image::Size;
 use marraztu_core::edit::several::Others;
 use marraztu_core::edit::{Gesture, GesturePhase, History, selection};
 use marraztu_core::scene::{ItemId, Light, LightId, Object, Scene, UpAxis, View};
@@ -191,6 +192,11 @@ impl State {
             gesture: Gesture::Whole,
             repeats: 0,
         }
+    }
+
+    /// Returns the scene as it is shown now, in a picture of this size.
+    pub(crate) fn shot(&self, size: Size) -> Shot {
+        Shot::new(&self.scene, &self.view, &self.settings, size)
     }
 
     /// Returns the item that the keys act on.

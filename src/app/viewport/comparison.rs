@@ -14,9 +14,8 @@ use crate::app::state::laboratory::{Compare, in_words};
 use crate::app::tasks::Task;
 use crate::app::theme;
 use crate::app::widgets::plate::plate_ui;
-use marraztu_core::accuracy::{Settings, Shot};
+use marraztu_core::accuracy::Shot;
 use marraztu_core::base::image::{Picture, Size};
-use marraztu_core::scene::{Scene, View};
 use marraztu_io::Progress;
 use marraztu_lab::error::{Error, amplified};
 use marraztu_lab::picture_source::{PictureSource as _, Reference, Studio};
@@ -24,10 +23,7 @@ use marraztu_lab::picture_source::{PictureSource as _, Reference, Studio};
 /// All inputs of the two pictures.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Compared {
-    pub(crate) scene: Scene,
-    pub(crate) view: View,
-    pub(crate) settings: Settings,
-    pub(crate) size: Size,
+    pub(crate) shot: Shot,
     pub(crate) against: Reference,
 }
 
@@ -47,13 +43,12 @@ pub(crate) struct Drawing {
 
 /// Draws both pictures; `None` if `progress` is cancelled.
 pub(crate) fn draw(of: Compared, progress: &Progress) -> Option<Pair> {
-    let shot = Shot::new(&of.scene, &of.view, &of.settings, of.size);
-    let mut studio = Studio::watched(shot, progress.clone());
-    let exact = studio.rendering(&of.against.of(&of.settings));
+    let mut studio = Studio::watched(of.shot.clone(), progress.clone());
+    let exact = studio.rendering(&of.against.of(&of.shot.settings));
     if progress.is_cancelled() {
         return None;
     }
-    let ours = studio.rendering(&of.settings);
+    let ours = studio.rendering(&of.shot.settings);
     if progress.is_cancelled() {
         return None;
     }
@@ -207,16 +202,15 @@ fn load(ctx: &Context, texture: &mut Option<TextureHandle>, name: &str, picture:
 #[cfg(test)]
 mod tests {
     use super::*;
-    use marraztu_core::accuracy::AXES;
+    use marraztu_core::accuracy::{AXES, Settings};
 
     #[test]
     fn a_comparison_that_is_cancelled_gives_no_pictures() {
         let (scene, view) = marraztu_io::default_scene();
-        let (settings, size) = (Settings::default(), Size::new(64, 48));
+        let shot = Shot::new(&scene, &view, &Settings::default(), Size::new(64, 48));
         let shading = Reference::Alone(&AXES[0]);
         for against in [Reference::Ideal, shading] {
-            let (scene, view) = (scene.clone(), view.clone());
-            let of = Compared { scene, view, settings, size, against };
+            let of = Compared { shot: shot.clone(), against };
             let progress = Progress::new();
             assert!(draw(of.clone(), &progress).is_some());
             progress.cancel();

@@ -13,6 +13,7 @@ use super::{Asking, Due, Pick, Shared};
 use crate::app::drawing::dial::{DialFigures, Dialled};
 use crate::app::drawing::snapshot::Snapshot;
 use crate::app::drawing::viewport_renderer::Drawn;
+use marraztu_core::accuracy::Shot;
 use marraztu_core::base::image::Picture;
 use marraztu_io::scene_to_message;
 
@@ -57,10 +58,10 @@ impl<P> Elsewhere<P> {
     }
 
     fn written(&self, wanted: &Snapshot) -> Result<Wanted, String> {
-        let Snapshot { scene, view, settings, options } = wanted;
-        let before = self.sent.as_ref().map(|sent| &sent.scene);
+        let Snapshot { shot: Shot { scene, view, settings, size }, options } = wanted;
+        let before = self.sent.as_ref().map(|sent| &sent.shot.scene);
         let scene = scene_to_message((scene, view, settings), before)?;
-        Ok(Wanted { scene, options: options.clone() })
+        Ok(Wanted { scene, size: *size, options: options.clone() })
     }
 
     /// Takes results; `None` if the worker has failed and was replaced.
@@ -121,8 +122,7 @@ impl<P> Elsewhere<P> {
 /// Returns what the figures of the dial depend on, as
 /// [`IdleDial`](crate::app::drawing::dial::IdleDial) does.
 fn dialled(snapshot: &Snapshot) -> Option<Dialled> {
-    let Snapshot { scene, view, settings, options } = snapshot;
-    options.dial.map(|wish| Dialled::of((scene, view), settings, options.size, wish))
+    snapshot.options.dial.map(|wish| Dialled::of(&snapshot.shot, wish))
 }
 
 impl Drawn {

@@ -29,6 +29,7 @@ pub(super) struct Request {
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Wanted {
     pub(super) scene: String,
+    pub(super) size: Size,
     pub(super) options: DrawOptions,
 }
 

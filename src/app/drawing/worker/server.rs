@@ -5,6 +5,7 @@ use std::time::Duration;
 use super::message::{Reply, Request, Wanted, read, write};
 use super::{News, Pick, Worker};
 use crate::app::drawing::snapshot::Snapshot;
+use marraztu_core::accuracy::Shot;
 use marraztu_core::scene::Scene;
 use marraztu_io::{Known, scene_of_message};
 
@@ -52,8 +53,9 @@ impl DrawingServer {
         if let Some(wanted) = wanted {
             let snapshot = self.snapshot(wanted)?;
             // Unless objects arrive, none of their models is loaded again.
-            let before = self.scene.replace(snapshot.scene.clone());
-            self.is_stale &= before.is_some_and(|before| before.objects == snapshot.scene.objects);
+            let before = self.scene.replace(snapshot.shot.scene.clone());
+            self.is_stale &=
+                before.is_some_and(|before| before.objects == snapshot.shot.scene.objects);
             self.worker.draw(snapshot);
         }
         Some(())
@@ -63,7 +65,8 @@ impl DrawingServer {
         let before = self.scene.as_ref();
         let known = before.filter(|_| !self.is_stale).map(Known::of).unwrap_or_default();
         let (scene, view, settings) = scene_of_message(&wanted.scene, before, &known).ok()?;
-        Some(Snapshot { scene, view, settings, options: wanted.options })
+        let shot = Shot { scene, view, settings, size: wanted.size };
+        Some(Snapshot { shot, options: wanted.options })
     }
 
     /// Notes that files have changed: the models of the next objects are loaded again.
