@@ -140,11 +140,7 @@ pub(crate) fn axis(visuals: &Visuals, axis: Axis) -> Color32 {
 
 /// Returns the colour of an axis over the picture, on a dark background.
 pub(crate) const fn axis_on_dark(axis: Axis) -> Color32 {
-    match axis {
-        Axis::X => DARK.axes[0],
-        Axis::Y => DARK.axes[1],
-        Axis::Z => DARK.axes[2],
-    }
+    DARK.axes[axis.index()]
 }
 
 /// Returns the colour of lines between panels and around fields.

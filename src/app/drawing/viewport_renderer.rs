@@ -248,6 +248,20 @@ impl ViewportRenderer {
         self.dial.ideal(last, window, wanted)
     }
 
+    /// Returns whether the last picture was cancelled for a newer one.
+    pub(crate) const fn was_given_up(&self) -> bool {
+        self.gave_up
+    }
+
+    /// Finds one border around the visible parts of several items, filed under the id of one of
+    /// them.
+    pub(crate) fn border(&mut self, item: ItemId, all: &[ItemId]) -> Option<Border> {
+        self.shown?;
+        let [width, height] = self.images[2].size;
+        let own = self.renderer.pixels_of_any(all);
+        Some(Border::of(item, Size::new(width, height), &own))
+    }
+
     /// Returns the hit at a pixel of the picture at full size.
     pub(crate) fn hit(&mut self, [x, y]: [usize; 2]) -> Option<Hit> {
         let by = self.shown?.shrink.factor();
@@ -276,27 +290,6 @@ fn applicable(wanted: &Snapshot) -> Applicable {
         object.visible && object.surface != Surface::Material && (own || object.texture.is_some())
     });
     Applicable { settings: wanted.shot.settings, textured }
-}
-
-impl ViewportRenderer {
-    /// Returns whether the last picture was cancelled for a newer one.
-    pub(crate) const fn was_given_up(&self) -> bool {
-        self.gave_up
-    }
-
-    /// Finds the border around the visible part of an item.
-    pub(crate) fn border(&mut self, item: ItemId) -> Option<Border> {
-        self.border_of(item, &[item])
-    }
-
-    /// Finds one border around the visible parts of several items, filed under the id of one of
-    /// them.
-    pub(crate) fn border_of(&mut self, item: ItemId, all: &[ItemId]) -> Option<Border> {
-        self.shown?;
-        let [width, height] = self.images[2].size;
-        let own = self.renderer.pixels_of_any(all);
-        Some(Border::of(item, Size::new(width, height), &own))
-    }
 }
 
 #[cfg(test)]
@@ -386,7 +379,7 @@ mod tests {
             .collect();
         assert_eq!(own, renderer.renderer.pixels_of(item));
         let is_own = |x: usize, y: usize| own[y * size.width + x];
-        let border = renderer.border(item).unwrap();
+        let border = renderer.border(item, &[item]).unwrap();
         let pixels = |runs: &[Run]| -> Vec<(usize, usize)> {
             runs.iter().flat_map(|run| (0..run.length).map(|i| (run.x + i, run.y))).collect()
         };
@@ -462,7 +455,7 @@ mod tests {
         let near = |a: usize, b: usize, by: usize| a.abs_diff(b) <= by;
         assert!(near(count, half_count, count / 5), "{count} {half_count}");
         assert!(near(x / count, half_x / half_count, 2) && near(y / count, half_y / half_count, 2));
-        assert_eq!(renderer.border(item).unwrap().size, Size::new(80, 60));
+        assert_eq!(renderer.border(item, &[item]).unwrap().size, Size::new(80, 60));
     }
 
     #[test]

@@ -13,9 +13,7 @@ use crate::app::widgets::controls::{
 use crate::app::widgets::number::Number;
 use crate::app::widgets::regions;
 use marraztu_core::accuracy::{ACCURACY_PRESETS, AXES, AccuracyPreset, Axis, Samples};
-use marraztu_core::scene::{
-    CameraMode, Command, Frame, Normals, Observer, Projection, Subject, Transformation, View,
-};
+use marraztu_core::scene::{CameraMode, Command, Frame, Subject, View};
 
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let area = ScrollArea::vertical().id_salt("view switches").auto_shrink(false);
@@ -26,9 +24,14 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
             frame_ui(ui, state, requests);
         });
         section(ui, "View", true, |ui| {
-            observer_ui(ui, state, requests);
-            projection_ui(ui, state, requests);
-            normals_ui(ui, state, requests);
+            let (of, labels) = ("Observer", ["From camera", "From object"]);
+            either_ui(ui, state, requests, of, labels, Action::ToggleObserver);
+            let (of, labels) = ("Projection", ["Perspective", "Orthographic"]);
+            either_ui(ui, state, requests, of, labels, Action::ToggleProjection);
+            let (of, labels) = ("Normals", ["Vertex", "Face"]);
+            row(ui, of, |ui| {
+                either_ui(ui, state, requests, of, labels, Action::ToggleLightNormals);
+            });
             background_ui(ui, state, requests);
         });
         section(ui, "Display", true, |ui| {
@@ -106,12 +109,8 @@ pub(crate) fn subject_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
 }
 
 fn transformation_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
-    let now = state.view.transformation;
-    let all = [
-        ("Move", now == Transformation::Translation, Action::Translate),
-        ("Rotate", now == Transformation::Rotation, Action::Rotate),
-        ("Scale", now == Transformation::Scaling, Action::Scale),
-    ];
+    let all = [("Move", Action::Translate), ("Rotate", Action::Rotate), ("Scale", Action::Scale)];
+    let all = all.map(|(label, action)| (label, action.is_on(state) == Some(true), action));
     actions_ui(ui, state, requests, "Transformation", &all);
 }
 
@@ -132,22 +131,17 @@ pub(crate) fn frame_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     actions_ui(ui, state, requests, of, &all);
 }
 
-fn observer_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
-    let object = state.view.observer == Observer::Object;
-    let all = [
-        ("From camera", !object, Action::ToggleObserver),
-        ("From object", object, Action::ToggleObserver),
-    ];
-    actions_ui(ui, state, requests, "Observer", &all);
-}
-
-fn projection_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
-    let orthographic = state.view.projection == Projection::Orthographic;
-    let all = [
-        ("Perspective", !orthographic, Action::ToggleProjection),
-        ("Orthographic", orthographic, Action::ToggleProjection),
-    ];
-    actions_ui(ui, state, requests, "Projection", &all);
+/// Shows the choice between the states of a switch, off and on.
+fn either_ui(
+    ui: &mut Ui,
+    state: &State,
+    requests: &mut Requests,
+    of: &str,
+    [off, on]: [&str; 2],
+    action: Action,
+) {
+    let is_on = action.is_on(state) == Some(true);
+    actions_ui(ui, state, requests, of, &[(off, !is_on, action), (on, is_on, action)]);
 }
 
 fn background_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
@@ -244,13 +238,6 @@ fn slot_ui(
     if enabled && response.clicked() {
         requests.push(action.into());
     }
-}
-
-fn normals_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
-    let face = state.view.normals == Normals::Face;
-    let all =
-        [("Vertex", !face, Action::ToggleLightNormals), ("Face", face, Action::ToggleLightNormals)];
-    row(ui, "Normals", |ui| actions_ui(ui, state, requests, "Normals", &all));
 }
 
 /// Shows the accuracy presets and every axis of the table.

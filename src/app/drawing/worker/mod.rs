@@ -446,7 +446,7 @@ impl Painter {
         let Self { renderer, last, .. } = self;
         // Picks and borders refer to the picture on screen, so they are answered before it changes.
         let picked: Vec<_> = picks.into_iter().map(|pick| (pick, renderer.hit(pick.at))).collect();
-        let border = border.and_then(|item| renderer.border(item));
+        let border = border.and_then(|item| renderer.border(item, &[item]));
         if !picked.is_empty() || border.is_some() {
             let mut desk = shared.lock();
             desk.news.picked.extend(picked);
@@ -503,9 +503,9 @@ impl Painter {
         if drawn.is_some() || another {
             // The outline is taken from this very picture, so it never lags behind.
             let (first, others) = wanted.options.outlined.split_first().unzip();
-            let own = first.and_then(|item| renderer.border(*item));
+            let own = first.and_then(|item| renderer.border(*item, &[*item]));
             let others = others.filter(|others| !others.is_empty());
-            let others = others.and_then(|all| renderer.border_of(*first?, all));
+            let others = others.and_then(|all| renderer.border(*first?, all));
             let outline = [own, others];
             outlined.clone_from(&wanted.options.outlined);
             let mut desk = shared.lock();
