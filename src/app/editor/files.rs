@@ -213,11 +213,7 @@ impl App {
             }
             Fetched::Texture(_, Err(error)) => self.tell_load_error(&error),
             Fetched::Texture(id, Ok((texture, findings))) => {
-                let notice = |finding: Finding| Notice {
-                    text: finding.to_string(),
-                    details: Vec::new(),
-                    offer: None,
-                };
+                let notice = |finding: Finding| Notice::new(finding.to_string());
                 self.state.notices.extend(findings.into_iter().map(notice));
                 let set = |object: &mut Object| object.texture = Some(texture);
                 match items::change_object(&self.state.scene, id, set) {

@@ -249,7 +249,7 @@ impl App {
             self.refuse(format!("\"{text}\" is not valid here: the field keeps its value"));
         }
         if let Some(text) = fonts::take_missing(&ctx) {
-            self.state.notices.push(Notice { text, details: Vec::new(), offer: None });
+            self.state.notices.push(Notice::new(text));
         }
         if Keyboard::take_held_escape(&ctx)
             && !Panel::MOMENTARY.into_iter().any(|panel| self.closes(panel))

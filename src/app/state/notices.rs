@@ -37,6 +37,11 @@ pub struct Notice {
 }
 
 impl Notice {
+    /// Creates a notice of one line.
+    pub const fn new(text: String) -> Self {
+        Self { text, details: Vec::new(), offer: None }
+    }
+
     /// Returns whether it waits for an answer. Any other notice moves to the status line after some
     /// seconds.
     pub const fn needs_answer(&self) -> bool {
