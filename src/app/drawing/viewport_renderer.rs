@@ -15,7 +15,7 @@ use super::dial::{DialFigures, IdleDial};
 use super::images::present;
 use super::reduction::{Applicable, Reduction};
 use super::refinement::{difference, next_samples};
-use super::snapshot::Snapshot;
+use super::snapshot::{DrawOptions, Snapshot};
 use marraztu_core::accuracy::{Samples, Settings, Shot};
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{ItemId, Surface};
@@ -118,12 +118,8 @@ impl ViewportRenderer {
         let mut plan = planned(wanted, Reduction::NONE);
         let mut changes = self.renderer.damage(&plan);
         let share = share(&changes);
-        let reduction = self.quality.choose(
-            wanted.options.moving,
-            share,
-            applicable(wanted),
-            wanted.options.budget,
-        );
+        let DrawOptions { moving, budget, .. } = wanted.options;
+        let reduction = self.quality.choose(moving, share, applicable(wanted), budget);
         if reduction != Reduction::NONE && !changes.is_nothing() {
             plan = planned(wanted, reduction);
             changes = self.renderer.damage(&plan);
@@ -300,9 +296,9 @@ mod tests {
     use super::super::reduction::Shrink;
     use super::*;
     use crate::app::drawing::border::Run;
-    use crate::app::drawing::snapshot::DrawOptions;
     use crate::app::state::Statistics;
     use marraztu_core::base::color::Color;
+    use marraztu_core::edit::items;
     use marraztu_core::scene::Command;
     use marraztu_io as io;
 
@@ -482,10 +478,8 @@ mod tests {
         let mut wanted = snapshot(Size::new(640, 480));
         renderer.draw(&wanted, &this).unwrap();
         let (id, _) = wanted.shot.scene.objects.iter().next().unwrap();
-        let command =
-            marraztu_core::edit::items::toggle_shown(&wanted.shot.scene, ItemId::Object(id))
-                .unwrap();
-        command.apply(&mut wanted.shot.scene).unwrap();
+        let command = items::toggle_shown(&wanted.shot.scene, ItemId::Object(id));
+        command.unwrap().apply(&mut wanted.shot.scene).unwrap();
         let drawn = renderer.draw(&wanted, &this).unwrap();
         assert!((1..40).contains(&drawn.changes.tiles()), "{:?}", drawn.changes);
         let mut fresh = ViewportRenderer::new(Instant::now);

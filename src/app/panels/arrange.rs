@@ -1,10 +1,10 @@
 //! Arranges the panels around the picture and shows the open ones.
 
-use egui::{Frame, Layout, Margin, Rect, Ui, UiBuilder};
+use egui::{Frame, Layout, Margin, Rect, Ui, UiBuilder, Vec2, Window, vec2};
 
 use super::{Dock, Panel, Side, each_panel};
 use super::{dial, greeting, lesson_card, menu_bar, palette, splitters, status_line};
-use crate::app::actions::Requests;
+use crate::app::actions::{Action, Requests};
 use crate::app::state::State;
 use crate::app::state::layout::Places;
 use crate::app::theme;
@@ -34,6 +34,29 @@ macro_rules! contents {
 }
 
 each_panel!(contents);
+
+/// Shows a panel as a window of a fixed size, or less in a small window. Its button closes the panel.
+pub(super) fn window(
+    ui: &Ui,
+    panel: Panel,
+    size: Vec2,
+    requests: &mut Requests,
+    add: impl FnOnce(&mut Ui, &mut Requests),
+) {
+    let mut open = true;
+    let area = ui.ctx().content_rect();
+    let size = size.min(area.size() - vec2(80.0, 120.0));
+    Window::new(panel.info().label)
+        .open(&mut open)
+        .collapsible(false)
+        .resizable(false)
+        .default_pos(area.center() - size / 2.0)
+        .fixed_size(size)
+        .show(ui.ctx(), |ui| add(ui, requests));
+    if !open {
+        requests.push(Action::Panel(panel).into());
+    }
+}
 
 impl Arrangement {
     /// Returns the area left for the picture.

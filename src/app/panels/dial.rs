@@ -5,7 +5,7 @@
 //! figures are grey. A click draws with the settings of a row. Over a low picture, the dial is one
 //! row, which unfolds the others.
 
-use egui::{Align2, Area, Color32, ComboBox, Frame, Id, Order, Rect, RichText, Role, Sense};
+use egui::{Align2, Area, ComboBox, Frame, Id, Order, Rect, RichText, Role, Sense};
 use egui::{TextStyle, Ui, WidgetInfo, pos2, vec2};
 
 use crate::app::actions::{Action, Request, Requests};
@@ -13,7 +13,7 @@ use crate::app::input::buttons::first_key;
 use crate::app::state::State;
 use crate::app::state::laboratory::Compare;
 use crate::app::theme;
-use crate::app::widgets::controls::{self, focus_ring, icon_at, put_text};
+use crate::app::widgets::controls::{self, focus_ring, icon_at, put_text, right_text, row_ground};
 use crate::app::widgets::icons::Icon;
 use crate::app::widgets::regions;
 use marraztu_core::accuracy::{ACCURACY_PRESETS, AccuracyPreset, Settings};
@@ -117,7 +117,7 @@ fn head_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     put_text(ui, rect.with_min_x(rect.left() + 4.0), title, weak);
     for ((head, hint), right) in heads.into_iter().zip(COLUMNS) {
         let cell = column(rect, right);
-        right_text(ui, cell, head, weak);
+        right_text(ui, cell, head, TextStyle::Body, weak);
         ui.interact(cell, ui.scope_id().with(("head", head)), Sense::hover()).on_hover_text(hint);
     }
     let square =
@@ -176,13 +176,7 @@ impl Row {
         let response = ui.interact(rect, id, regions::sense(Sense::click(), is_stop));
         let (figures, name) = (state.dial.of(&self.settings), self.name(state));
         response.widget_info(|| WidgetInfo::selected(Role::RadioButton, true, is_on, &name));
-        let visuals = ui.visuals();
-        let (fill, ink) = match (is_on, response.hovered()) {
-            (true, _) => (visuals.selection.bg_fill, visuals.selection.stroke.color),
-            (false, true) => (visuals.widgets.hovered.bg_fill, visuals.text_color()),
-            (false, false) => (Color32::TRANSPARENT, visuals.text_color()),
-        };
-        ui.painter().rect_filled(rect, 3.0, fill);
+        let ink = row_ground(ui, &response, is_on);
         if is_on {
             let bar =
                 Rect::from_min_size(rect.min + vec2(0.0, 3.0), vec2(2.0, rect.height() - 6.0));
@@ -199,7 +193,7 @@ impl Row {
             }
         };
         for (text, right) in texts.iter().zip(COLUMNS) {
-            right_text(ui, column(rect, right), text, ink);
+            right_text(ui, column(rect, right), text, TextStyle::Body, ink);
         }
         focus_ring(ui, rect, &response);
         let key = self.action.and_then(|action| first_key(ui, action));
@@ -227,10 +221,4 @@ fn milliseconds(ms: f64) -> String {
 
 fn column(row: Rect, right: f32) -> Rect {
     Rect::from_x_y_ranges(row.left() + right - 62.0..=row.left() + right, row.y_range())
-}
-
-fn right_text(ui: &Ui, rect: Rect, value: &str, ink: Color32) {
-    let galley = controls::text(ui, value, TextStyle::Body, rect.width());
-    let at = pos2(rect.right() - galley.size().x, rect.center().y - galley.size().y / 2.0);
-    ui.painter().galley_with_override_text_color(at, galley, ink);
 }

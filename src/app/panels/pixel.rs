@@ -159,9 +159,7 @@ fn term_ui(ui: &mut Ui, label: &str, values: [String; 3], color: Color32) {
             let size = vec2(NUMBER, theme::ROW - 4.0);
             let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
             response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &value));
-            let text = controls::text(ui, value.as_str(), TextStyle::Monospace, NUMBER);
-            let left = rect.right() - text.size().x;
-            controls::put_text(ui, rect.with_min_x(left), text, color);
+            controls::right_text(ui, rect, &value, TextStyle::Monospace, color);
         }
     });
 }

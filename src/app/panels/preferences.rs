@@ -3,10 +3,9 @@
 //! A row changes a copy of [`Preferences`]. The app applies the changed copy in the same way as the
 //! file at the start, so one request serves all rows.
 
-use egui::{
-    Align, DragValue, Layout, ScrollArea, Sense, TextStyle, ThemePreference, Ui, Window, vec2,
-};
+use egui::{Align, DragValue, Layout, ScrollArea, Sense, TextStyle, ThemePreference, Ui, vec2};
 
+use super::arrange::window;
 use crate::app::actions::{Action, Request, Requests};
 use crate::app::input::keyboard::Keyboard;
 use crate::app::panels::{OpenPanels, Panel};
@@ -239,19 +238,8 @@ pub(crate) fn now(ctx: &egui::Context, state: &State, before: Option<[f32; 2]>) 
 }
 
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
-    let mut open = true;
-    let room = ui.ctx().content_rect().size() - vec2(80.0, 120.0);
-    let size = SIZE.min(room);
-    Window::new(Panel::Preferences.info().label)
-        .open(&mut open)
-        .collapsible(false)
-        .resizable(false)
-        .default_pos(ui.ctx().content_rect().center() - size / 2.0)
-        .fixed_size(size)
-        .show(ui.ctx(), |ui| contents(ui, state, requests));
-    if !open {
-        requests.push(Action::Panel(Panel::Preferences).into());
-    }
+    let add = |ui: &mut Ui, requests: &mut Requests| contents(ui, state, requests);
+    window(ui, Panel::Preferences, SIZE, requests, add);
 }
 
 fn contents(ui: &mut Ui, state: &State, requests: &mut Requests) {

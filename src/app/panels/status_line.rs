@@ -293,19 +293,13 @@ fn step(state: &State) -> Option<String> {
 
 /// Joins the parts. If they do not fit, dots replace parts in the middle.
 fn fitted(parts: &[String], fits: impl Fn(&str) -> bool) -> String {
-    let whole = parts.join(BETWEEN);
     // The first part and the last ones are the most important.
     for left_out in 0..parts.len().saturating_sub(1) {
-        if left_out == 0 {
-            if fits(&whole) {
-                return whole;
-            }
-            continue;
-        }
         let first = (parts.len() - left_out).div_ceil(2);
-        let mut kept: Vec<&str> = parts[..first].iter().map(String::as_str).collect();
-        kept.push("...");
-        kept.extend(parts[first + left_out..].iter().map(String::as_str));
+        let mut kept = parts.to_vec();
+        if left_out > 0 {
+            kept.splice(first..first + left_out, ["...".to_owned()]);
+        }
         let text = kept.join(BETWEEN);
         if fits(&text) {
             return text;

@@ -124,11 +124,8 @@ impl Comparison {
         let response = ui.interact(grip_at(rect, part), Id::unique("split"), Sense::drag());
         let response = response.on_hover_cursor(CursorIcon::ResizeHorizontal);
         response.widget_info(|| {
-            egui::WidgetInfo::slider(
-                true,
-                f64::from(part),
-                "Split between the reference and the picture",
-            )
+            let name = "Split between the reference and the picture";
+            egui::WidgetInfo::slider(true, f64::from(part), name)
         });
         ui.painter().rect_filled(handle, 4.0, theme::accent(ui.visuals()));
         if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged()) {

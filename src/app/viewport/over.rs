@@ -1,6 +1,6 @@
 //! Overlays of the picture: the outline of the selection, marks of lights, axes.
 
-use egui::{Pos2, Rect, Response, Ui};
+use egui::{Pos2, Rect, Response, Stroke, Ui};
 
 use super::gizmo::{Gizmo, Grab};
 use super::marks::Projection;
@@ -35,7 +35,7 @@ impl Viewport {
         for (width, color) in
             [(3.5, egui::Color32::from_black_alpha(170)), (1.5, egui::Color32::WHITE)]
         {
-            let stroke = egui::Stroke::new(width, color);
+            let stroke = Stroke::new(width, color);
             painter.circle_stroke(at, 6.0, stroke);
             for way in [egui::vec2(1.0, 0.0), egui::vec2(0.0, 1.0)] {
                 painter.line_segment([at + way * 6.0, at + way * 13.0], stroke);
@@ -58,16 +58,11 @@ impl Viewport {
         if let Some(area) = self.mouse.selection_box() {
             let accent = theme::accent_on_dark();
             let painter = ui.painter().with_clip_rect(rect);
-            let dark = egui::Color32::from_black_alpha(110);
+            let dark = Stroke::new(3.5, egui::Color32::from_black_alpha(110));
             let kind = egui::StrokeKind::Middle;
-            painter.rect_stroke(area, 0.0, egui::Stroke::new(3.5, dark), kind);
-            painter.rect(
-                area,
-                0.0,
-                accent.gamma_multiply(0.12),
-                egui::Stroke::new(1.5, accent),
-                kind,
-            );
+            painter.rect_stroke(area, 0.0, dark, kind);
+            let fill = accent.gamma_multiply(0.12);
+            painter.rect(area, 0.0, fill, Stroke::new(1.5, accent), kind);
         }
     }
 

@@ -31,6 +31,24 @@ pub(crate) fn put_text(ui: &Ui, rect: Rect, galley: Arc<Galley>, color: Color32)
     ui.painter().galley_with_override_text_color(at, galley, color);
 }
 
+/// Draws a line of text at the right of `rect`, vertically centred.
+pub(crate) fn right_text(ui: &Ui, rect: Rect, value: &str, style: TextStyle, color: Color32) {
+    let galley = text(ui, value, style, rect.width());
+    put_text(ui, rect.with_min_x(rect.right() - galley.size().x), galley, color);
+}
+
+/// Draws the background of a row that is on or under the pointer. Returns the colour of its text.
+pub(crate) fn row_ground(ui: &Ui, row: &Response, on: bool) -> Color32 {
+    let visuals = ui.visuals();
+    let (fill, ink) = match (on, row.hovered()) {
+        (true, _) => (visuals.selection.bg_fill, visuals.selection.stroke.color),
+        (false, true) => (visuals.widgets.hovered.bg_fill, visuals.text_color()),
+        (false, false) => (Color32::TRANSPARENT, visuals.text_color()),
+    };
+    ui.painter().rect_filled(row.rect, 3.0, fill);
+    ink
+}
+
 /// Shows a part of a panel that can be folded.
 pub(crate) fn section(ui: &mut Ui, title: &'static str, open: bool, add: impl FnOnce(&mut Ui)) {
     regions::begin(ui, ("section", ui.layer_id(), title));

@@ -289,26 +289,23 @@ fn clicks(state: &State, requests: &mut Requests, item: ItemId, response: &Respo
         ui.set_min_width(160.0);
         let mut actions =
             vec![Action::Rename, Action::Duplicate, Action::Delete, Action::ToggleLocked];
-        if !matches!(item, ItemId::Light(_)) {
-            actions.push(Action::ToggleVisible);
-        }
-        if matches!(item, ItemId::Light(_)) {
-            actions.extend([
-                Action::SoloLight,
-                Action::ToggleShadows,
-                Action::AimAtSelection,
-                Action::AimByClick,
-            ]);
-        }
-        if matches!(item, ItemId::Object(_)) {
-            actions.extend([
+        match item {
+            ItemId::Object(_) => actions.extend([
+                Action::ToggleVisible,
                 Action::FrameSelection,
                 Action::ToggleOthers,
                 Action::WhyUnseen,
                 Action::DropToGround,
                 Action::Split,
                 Action::ChooseTexture,
-            ]);
+            ]),
+            ItemId::Camera(_) => actions.push(Action::ToggleVisible),
+            ItemId::Light(_) => actions.extend([
+                Action::SoloLight,
+                Action::ToggleShadows,
+                Action::AimAtSelection,
+                Action::AimByClick,
+            ]),
         }
         if is_missing(&state.scene, item) {
             actions.insert(0, Action::FindMissing);
