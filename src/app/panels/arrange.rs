@@ -11,7 +11,7 @@ use crate::app::theme;
 use crate::app::widgets::regions;
 
 /// The places of the panels in one frame.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Arrangement {
     /// The area between the menus and the status line.
     area: Rect,

@@ -33,7 +33,7 @@ use crate::app::chord::Chord::{Command, Either, Named, Text};
 use marraztu_io as io;
 
 /// The place of a panel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Dock {
     /// At a side of the picture; in a narrow window, one at a time.
     Beside(Side),
@@ -56,7 +56,7 @@ impl Dock {
 }
 
 /// A place at a side of the picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Side {
     /// At the left: the list of objects, cameras and lights.
     Outline,

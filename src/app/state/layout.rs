@@ -75,20 +75,12 @@ pub struct Layout {
 }
 
 /// The places of everything between the menus and the status line.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Places {
     /// The buttons that unfold panels, in a narrow window.
     pub strip: Option<Rect>,
-    /// The list of objects, cameras and lights.
-    pub outline: Option<Rect>,
-    /// The switches of the view.
-    pub switches: Option<Rect>,
-    /// The properties of the selected item.
-    pub properties: Option<Rect>,
-    /// The laboratory.
-    pub laboratory: Option<Rect>,
-    /// The plan.
-    pub plan: Option<Rect>,
+    /// The docked panels.
+    docks: BTreeMap<Dock, Rect>,
     /// The picture.
     pub picture: Rect,
 }
@@ -121,36 +113,30 @@ fn share(of: f32, part: f32, least: f32, rest: f32) -> f32 {
 impl Layout {
     /// Divides `area` among the open panels and the picture.
     pub fn divide(&self, area: Rect, panels: OpenPanels) -> Places {
-        let mut rest = area;
+        let mut places = Places::of_picture(area);
         // The laboratory spans the width of the window, so it is cut off first.
-        let laboratory = panels.has(Panel::Laboratory).then(|| {
-            let height =
-                share(area.height(), self.wish(Splitter::Laboratory).unwrap_or(0.5), 150.0, 150.0);
-            let (above, place) = cut(rest, area.bottom() - height);
-            rest = above;
-            place
-        });
-        let mut places = Places { laboratory, ..Places::of_picture(rest) };
+        if panels.has(Panel::Laboratory) {
+            let part = self.wish(Splitter::Laboratory).unwrap_or(0.5);
+            places.cut_off(Dock::Bottom, share(area.height(), part, 150.0, 150.0));
+        }
         if area.width() < NARROW {
-            self.one_column(&mut rest, &mut places);
+            self.one_column(&mut places);
         } else {
-            self.columns(area.width(), &mut rest, panels, &mut places);
+            self.columns(area.width(), panels, &mut places);
         }
         // The plan lies under the picture, between the columns.
-        places.plan = panels.has(Panel::Plan).then(|| {
-            let height =
-                share(rest.height(), self.wish(Splitter::Plan).unwrap_or(0.34), 90.0, LEAST);
-            let (above, place) = cut(rest, rest.bottom() - height);
-            rest = above;
-            place
-        });
-        places.picture = rest;
+        if panels.has(Panel::Plan) {
+            let part = self.wish(Splitter::Plan).unwrap_or(0.34);
+            let height = share(places.picture.height(), part, 90.0, LEAST);
+            places.cut_off(Dock::UnderPicture, height);
+        }
         places
     }
 
     /// Places the strip and the one panel that is unfolded.
-    fn one_column(&self, rest: &mut Rect, places: &mut Places) {
-        places.strip = Some(rest.with_max_x(rest.left() + STRIP));
+    fn one_column(&self, places: &mut Places) {
+        let Places { strip, docks, picture: rest } = places;
+        *strip = Some(rest.with_max_x(rest.left() + STRIP));
         rest.min.x += STRIP;
         let Some(side) = self.unfolded else { return };
         let wish = match side {
@@ -158,17 +144,14 @@ impl Layout {
             Side::Properties => self.wish(Splitter::Right),
         };
         let width = share(rest.width(), wish.unwrap_or(250.0) / rest.width(), 220.0, 40.0);
-        let place = Some(rest.with_max_x(rest.left() + width));
-        match side {
-            Side::Outline => places.outline = place,
-            Side::Switches => places.switches = place,
-            Side::Properties => places.properties = place,
-        }
+        docks.insert(Dock::Beside(side), rest.with_max_x(rest.left() + width));
         rest.min.x += width;
     }
 
     /// Places the columns at both sides.
-    fn columns(&self, width: f32, rest: &mut Rect, panels: OpenPanels, places: &mut Places) {
+    fn columns(&self, width: f32, panels: OpenPanels, places: &mut Places) {
+        let Places { docks, picture: rest, .. } = places;
+        let mut dock = |side, place| docks.extend([(Dock::Beside(side), place)]);
         let (left, right) = if width >= WIDE { (228.0, 280.0) } else { (212.0, 256.0) };
         if panels.has(Panel::Outline) || panels.has(Panel::View) {
             let left = self.wish(Splitter::Left).unwrap_or(left).clamp(180.0, width * 0.28).round();
@@ -179,16 +162,17 @@ impl Layout {
                     let part = self.wish(Splitter::Switches).unwrap_or(0.56);
                     let height = share(column.height(), part, LEAST, LEAST);
                     let (above, below) = cut(column, column.bottom() - height);
-                    (places.outline, places.switches) = (Some(above), Some(below));
+                    dock(Side::Outline, above);
+                    dock(Side::Switches, below);
                 }
-                (true, false) => places.outline = Some(column),
-                _ => places.switches = Some(column),
+                (true, false) => dock(Side::Outline, column),
+                _ => dock(Side::Switches, column),
             }
         }
         if panels.has(Panel::Properties) {
             let right =
                 self.wish(Splitter::Right).unwrap_or(right).clamp(232.0, width * 0.34).round();
-            places.properties = Some(rest.with_min_x(rest.right() - right));
+            dock(Side::Properties, rest.with_min_x(rest.right() - right));
             rest.max.x -= right;
         }
     }
@@ -203,9 +187,11 @@ impl Layout {
             Splitter::Left => Some(to.x - area.left() - now.strip_width()),
             Splitter::Right if now.strip.is_some() => Some(to.x - area.left() - now.strip_width()),
             Splitter::Right => Some(area.right() - to.x),
-            Splitter::Switches => joined(now.outline, now.switches).map(part),
+            Splitter::Switches => {
+                joined(now.beside(Side::Outline), now.beside(Side::Switches)).map(part)
+            }
             Splitter::Laboratory => Some(part(area)),
-            Splitter::Plan => joined(now.plan, Some(now.picture)).map(part),
+            Splitter::Plan => joined(now.of(Dock::UnderPicture), Some(now.picture)).map(part),
         };
         self.wishes[splitter as usize] = wish.or(self.wish(splitter));
         self
@@ -227,15 +213,14 @@ fn cut(rect: Rect, y: f32) -> (Rect, Rect) {
 impl Places {
     /// Gives everything to the picture.
     pub const fn of_picture(picture: Rect) -> Self {
-        Self {
-            strip: None,
-            outline: None,
-            switches: None,
-            properties: None,
-            laboratory: None,
-            plan: None,
-            picture,
-        }
+        Self { strip: None, docks: BTreeMap::new(), picture }
+    }
+
+    /// Gives the lower part of the picture, of this height, to a dock.
+    fn cut_off(&mut self, dock: Dock, height: f32) {
+        let (above, below) = cut(self.picture, self.picture.bottom() - height);
+        self.picture = above;
+        self.docks.insert(dock, below);
     }
 
     fn strip_width(&self) -> f32 {
@@ -243,23 +228,12 @@ impl Places {
     }
 
     /// Returns the place of a dock, if it holds a panel.
-    pub const fn of(&self, dock: Dock) -> Option<Rect> {
-        match dock {
-            Dock::Beside(Side::Outline) => self.outline,
-            Dock::Beside(Side::Switches) => self.switches,
-            Dock::Beside(Side::Properties) => self.properties,
-            Dock::Bottom => self.laboratory,
-            Dock::UnderPicture => self.plan,
-            Dock::Floating => None,
-        }
+    pub fn of(&self, dock: Dock) -> Option<Rect> {
+        self.docks.get(&dock).copied()
     }
 
-    /// Iterates over all panels and the picture.
-    pub fn all(&self) -> impl Iterator<Item = Rect> {
-        let Self { strip, outline, switches, properties, laboratory, plan, picture } = *self;
-        [strip, outline, switches, properties, laboratory, plan, Some(picture)]
-            .into_iter()
-            .flatten()
+    fn beside(&self, side: Side) -> Option<Rect> {
+        self.of(Dock::Beside(side))
     }
 
     /// Returns the area for grabbing a splitter, `thick` points wide, if the splitter is shown.
@@ -270,22 +244,23 @@ impl Places {
         let level = |rect: Rect| {
             Rect::from_center_size(pos2(rect.center().x, rect.top()), vec2(rect.width(), thick))
         };
+        let (outline, switches) = (self.beside(Side::Outline), self.beside(Side::Switches));
         match splitter {
             Splitter::Left => {
-                let column = match (self.outline, self.switches) {
+                let column = match (outline, switches) {
                     (Some(outline), Some(switches)) => outline.union(switches),
                     (one, other) => one.or(other)?,
                 };
                 Some(upright(column, column.right()))
             }
             Splitter::Right => {
-                let place = self.properties?;
+                let place = self.beside(Side::Properties)?;
                 let x = if self.strip.is_some() { place.right() } else { place.left() };
                 Some(upright(place, x))
             }
-            Splitter::Switches => self.outline.and(self.switches).map(level),
-            Splitter::Laboratory => self.laboratory.map(level),
-            Splitter::Plan => self.plan.map(level),
+            Splitter::Switches => outline.and(switches).map(level),
+            Splitter::Laboratory => self.of(Dock::Bottom).map(level),
+            Splitter::Plan => self.of(Dock::UnderPicture).map(level),
         }
     }
 }
@@ -332,7 +307,9 @@ mod tests {
     fn panels_and_picture_fill_the_area_and_share_no_point() {
         every_layout(|layout, area, panels| {
             let places = layout.divide(area, panels);
-            let all: Vec<Rect> = places.all().collect();
+            let docks = places.docks.values().copied();
+            let all: Vec<_> =
+                places.strip.into_iter().chain(docks).chain([places.picture]).collect();
             let sum: f32 = all.iter().map(Rect::area).sum();
             assert!((sum - area.area()).abs() < 1.0, "{places:?}");
             for (i, a) in all.iter().enumerate() {
@@ -369,8 +346,8 @@ mod tests {
         let large = Rect::from_min_size(pos2(0.0, 0.0), vec2(1920.0, 1030.0));
         let before = layout.divide(large, panels);
         let small = layout.divide(Rect::from_min_size(large.min, vec2(640.0, 350.0)), panels);
-        assert!(small.outline.is_none() && small.strip.is_some());
+        assert!(small.beside(Side::Outline).is_none() && small.strip.is_some());
         assert_eq!(layout.divide(large, panels), before);
-        assert_eq!(before.outline.unwrap().width(), 300.0);
+        assert_eq!(before.beside(Side::Outline).unwrap().width(), 300.0);
     }
 }
