@@ -28,7 +28,6 @@ pub enum Chord {
 
 impl Chord {
     /// Returns whether pressing `key` under `modifiers` triggers it.
-    #[must_use]
     pub fn is_pressed_by(self, key: Key, modifiers: Modifiers) -> bool {
         let Modifiers { alt, shift, command, ctrl, mac_cmd } = modifiers;
         let plain = !alt && !command && !ctrl && !mac_cmd;
@@ -51,7 +50,6 @@ impl Chord {
     }
 
     /// Returns whether it works without keyboard focus on the viewport.
-    #[must_use]
     pub const fn is_global(self) -> bool {
         match self {
             Self::Command(_) | Self::CommandShift(_) => true,
@@ -61,7 +59,6 @@ impl Chord {
     }
 
     /// Returns whether one press could mean both.
-    #[must_use]
     pub fn clashes_with(self, other: Self) -> bool {
         use Chord::{Either, Lower, Upper};
         if let (Either(a), Lower(b) | Upper(b)) | (Lower(a) | Upper(a), Either(b)) = (self, other) {
@@ -72,7 +69,6 @@ impl Chord {
     }
 
     /// Returns its name; letters have their typed case.
-    #[must_use]
     pub fn name(self) -> String {
         let letter = |key: Key| key.symbol_or_name().to_owned();
         match self {
@@ -88,7 +84,6 @@ impl Chord {
     }
 
     /// Returns the names of all chords that trigger it.
-    #[must_use]
     pub fn names(self) -> Vec<String> {
         if let Self::Either(key) = self {
             vec![Self::Lower(key).name(), Self::Upper(key).name()]

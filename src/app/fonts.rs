@@ -172,7 +172,6 @@ fn font_with(fonts: &Database, letter: char) -> Option<Font> {
     })
 }
 
-/// Returns whether a face has an outline for a letter.
 fn has(data: &[u8], face: u32, letter: char) -> bool {
     ttf_parser::Face::parse(data, face).is_ok_and(|face| {
         let glyph = face.glyph_index(letter);

@@ -13,7 +13,6 @@
 //! theme      colours, sizes, spacing
 //! fonts      fonts of the system, for letters that the built-in fonts lack
 //! tasks      work on background threads
-//! shell      the window of the editor, painted with OpenGL or without
 //! widgets    controls, independent of scenes: numbers, switches, colours, icons
 //! drawing    the thread that draws the viewport's pictures, with adaptive quality
 //! chord      key chords
@@ -25,6 +24,7 @@
 //! panels     the contents of the panels around the viewport
 //! viewport   the picture, with the mouse and everything shown over it
 //! editor     the app: it answers requests, and is the only writer of the scene
+//! shell      the window of the editor, painted with OpenGL or without
 //! start      opens the window
 //! ```
 

@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 use std::process::Command;
 
-use egui::{IconData, Ui, ViewportBuilder};
+use egui::{IconData, ViewportBuilder};
 
 use crate::app::editor::App;
-use crate::app::shell::{self, Editor, Parent, Shell, StartError};
+use crate::app::shell::{self, Shell, StartError};
 use marraztu_core::accuracy::AccuracyPreset;
 use marraztu_io::{OwnFolders, Preferences};
 
@@ -27,13 +27,13 @@ pub fn run(
     let opened = shell::run(
         shell,
         window,
-        Box::new(move |ctx| -> Box<dyn Editor> {
+        Box::new(move |ctx| {
             let mut app = App::start(ctx, own);
             if let Some(preset) = preset {
                 app.use_preset(preset);
             }
             app.open_at_start(ctx, named);
-            Box::new(app)
+            app
         }),
     );
     match opened {
@@ -53,17 +53,6 @@ fn again_without_gl(files: &[PathBuf], preset: Option<&AccuracyPreset>) -> Resul
     }
     program.arg("--").args(files);
     become_it(program).map_err(failed)
-}
-
-impl Editor for App {
-    fn frame(&mut self, ui: &mut Ui, parent: &dyn Parent) {
-        Self::frame(self, ui);
-        self.dialogs.open_system(ui.ctx(), parent);
-    }
-
-    fn left(&mut self) {
-        self.end();
-    }
 }
 
 /// Describes the window, with the size of the last session.

@@ -94,7 +94,6 @@ const fn gray(level: u8) -> Color32 {
     Color32::from_gray(level)
 }
 
-/// Returns the name of the font of the icons.
 pub(crate) fn icon_family() -> FontFamily {
     FontFamily::Name("icons".into())
 }
@@ -130,7 +129,6 @@ pub(crate) const fn warning_on_dark() -> Color32 {
     DARK.error
 }
 
-/// Returns the colour of errors.
 pub(crate) fn error(visuals: &Visuals) -> Color32 {
     palette(visuals).error
 }
@@ -142,11 +140,7 @@ pub(crate) fn axis(visuals: &Visuals, axis: Axis) -> Color32 {
 
 /// Returns the colour of an axis over the picture, on a dark background.
 pub(crate) const fn axis_on_dark(axis: Axis) -> Color32 {
-    match axis {
-        Axis::X => DARK.axes[0],
-        Axis::Y => DARK.axes[1],
-        Axis::Z => DARK.axes[2],
-    }
+    DARK.axes[axis.index()]
 }
 
 /// Returns the colour of lines between panels and around fields.

@@ -227,7 +227,8 @@ fn theme_panels_scale_and_recent_files_are_remembered() {
     editor.wait_until(|editor| editor.shows("Material of cube.obj"));
     editor.click_label("Load");
     let panels = editor.state().panels;
-    let layout = Layout { right: Some(333.0), plan: Some(0.25), ..Layout::default() };
+    let layout =
+        Layout::of_shares(&[("right".to_owned(), 333.0), ("plan".to_owned(), 0.25)].into());
     editor.ask(Request::Layout(layout));
     editor.perform(Action::ToggleOverlays);
     editor.settle();

@@ -95,7 +95,6 @@ impl Group {
     ];
 
     /// Returns its heading.
-    #[must_use]
     pub const fn label(self) -> &'static str {
         match self {
             Self::File => "File",
@@ -130,7 +129,6 @@ macro_rules! actions {
             pub(super) const ROWS: &'static [Self] = &[$(Self::$name),+];
 
             /// Returns the appearance of the action.
-            #[must_use]
             pub const fn info(self) -> ActionInfo {
                 match self {
                     $(Self::$name => ActionInfo {

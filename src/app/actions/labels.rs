@@ -8,19 +8,9 @@ use marraztu_core::base::math::Axis;
 use marraztu_core::edit::transform::{self, distance};
 use marraztu_core::scene::{CameraMode, Subject, Transformation};
 
-/// The effect of a step of x, y or z on the selected item.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Deed {
-    Move,
-    Turn,
-    Orbit,
-    Scale,
-}
-
 impl Action {
     /// Names the effect of the action, repeated `times` times in one gesture, for the history:
     /// "Move teapot 10 along x".
-    #[must_use]
     pub fn step_label(self, state: &State, times: u32) -> String {
         let name = &state.acted_on_name();
         let info = self.info();
@@ -45,48 +35,41 @@ impl Action {
 fn amount(state: &State, name: &str, axis: Axis, count: f64) -> String {
     let letter = ["x", "y", "z"][axis.index()];
     let steps = &state.view.steps;
-    match deed(state, axis) {
-        Deed::Move => {
+    let (transformation, orbits) = deed(state, axis);
+    match transformation {
+        Transformation::Translation => {
             let amount = short(count * distance(&state.scene, &state.view, axis));
             format!("Move {name} {amount} along {letter}")
         }
-        Deed::Turn => {
+        Transformation::Rotation => {
             let amount = short(count * steps.rotation);
-            format!("Rotate {name} {amount} deg about {letter}")
+            let (verb, about) = if orbits { ("Orbit", "by") } else { ("Rotate", "about") };
+            format!("{verb} {name} {amount} deg {about} {letter}")
         }
-        Deed::Orbit => {
-            let amount = short(count * steps.rotation);
-            format!("Orbit {name} {amount} deg by {letter}")
-        }
-        Deed::Scale => {
+        Transformation::Scaling => {
             let factor = libm::pow(steps.scaling, count);
             format!("Scale {name} by {}", short(factor))
         }
     }
 }
 
-fn deed(state: &State, axis: Axis) -> Deed {
+/// Returns the effect of a step of x, y or z on the selected item, and whether it orbits an object.
+fn deed(state: &State, axis: Axis) -> (Transformation, bool) {
     let view = &state.view;
-    let deed = |transformation| match transformation {
-        Transformation::Translation => Deed::Move,
-        Transformation::Rotation => Deed::Turn,
-        Transformation::Scaling => Deed::Scale,
-    };
-    let chosen = deed(view.transformation);
+    let chosen = view.transformation;
     match view.subject {
-        Subject::Object => chosen,
+        Subject::Object => (chosen, false),
         Subject::Camera => {
             let pose = state.scene.selected_camera(view).pose.now();
             match (axis, pose.mode_with(view.object)) {
-                (Axis::X | Axis::Y, CameraMode::Analysis { .. }) => Deed::Orbit,
-                (Axis::X | Axis::Y, CameraMode::Fly) => Deed::Turn,
-                (Axis::Z, _) => chosen,
+                (Axis::X | Axis::Y, mode) => (Transformation::Rotation, mode != CameraMode::Fly),
+                (Axis::Z, _) => (chosen, false),
             }
         }
         Subject::Light => {
             let light = view.light.and_then(|id| state.scene.lights.get(id));
-            let does = light.map(|light| transform::transformation_of(light, view.transformation));
-            does.and_then(Result::ok).map_or(chosen, deed)
+            let does = light.and_then(|light| transform::transformation_of(light, chosen).ok());
+            (does.unwrap_or(chosen), false)
         }
     }
 }

@@ -25,7 +25,6 @@ impl Action {
     };
 
     /// Returns its name in preferences.
-    #[must_use]
     pub fn name(self) -> String {
         match self {
             Self::Panel(panel) => format!("{panel:?}"),
@@ -35,7 +34,6 @@ impl Action {
 
     /// Finds the action with this name in preferences. Older versions called the actions of panels
     /// `TogglePlan` or `ToggleViewPanel`.
-    #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         let panel = name.strip_prefix("Toggle").map(|name| name.trim_end_matches("Panel"));
         let find = |name: &str| Self::ALL.iter().copied().find(|action| action.name() == name);

@@ -16,6 +16,6 @@ pub use info::{ActionInfo, Group};
 pub(crate) use intent::{ClipboardIntent, FileIntent, Intent};
 pub use mouse::MouseInfo;
 pub use request::{Also, KeyRequest, LabRequest, MissingRequest, Request};
-pub(crate) use request::{change, change_view};
+pub(crate) use request::{Requests, change, change_view};
 pub(crate) use resolve::{ADD_LIGHTS, resolve};
 pub use table::Action;

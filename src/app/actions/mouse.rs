@@ -16,88 +16,47 @@ pub struct MouseInfo {
     pub words: &'static str,
 }
 
+/// Makes the table from rows of inputs, label, hint and words.
+macro_rules! mouse {
+    ($([$($input:expr),+] $label:literal $hint:expr => $words:literal;)+) => {
+        [$(MouseInfo { inputs: &[$($input),+], label: $label, hint: $hint, words: $words }),+]
+    };
+}
+
 impl MouseInfo {
     /// The heading of the list.
     pub const HEADING: &'static str = "Mouse over the picture";
 
     /// All kinds of mouse input, the most important first.
-    pub const ALL: [Self; 12] = [
-        Self {
-            inputs: &["Click"],
-            label: "Select",
-            hint: "Selects the item under the pointer; another click selects the one behind it.",
-            words: "mouse pick choose left",
-        },
-        Self {
-            inputs: &["Double click"],
-            label: "Frame",
-            hint: "Frames the object under the pointer; on the background, frames all.",
-            words: "mouse zoom fit focus left",
-        },
-        Self {
-            inputs: &["Drag"],
-            label: "Look around",
-            hint: "Turns the camera; in analysis, orbits the selected object.",
-            words: "mouse orbit turn rotate view left",
-        },
-        Self {
-            inputs: &["Alt+drag"],
-            label: "Orbit",
-            hint: "Orbits the selected object, in fly as well.",
-            words: "mouse turn rotate around view left",
-        },
-        Self {
-            inputs: &["Shift+drag", "Middle drag"],
-            label: "Pan",
-            hint: "Moves the camera sideways.",
-            words: "mouse shift move view left",
-        },
-        Self {
-            inputs: &["Wheel", "Pinch"],
-            label: "Zoom",
-            hint: "Zooms towards the pointer, or away from it.",
-            words: "mouse scroll near closer far dolly",
-        },
-        Self {
-            inputs: &["Right click"],
-            label: "Menu",
-            hint: "Opens the menu of the item under the pointer.",
-            words: "mouse context",
-        },
-        Self {
-            inputs: &["Right held"],
-            label: "Fly",
-            hint: "Flies with W A S D Q E; Shift is fast, Alt is slow, the wheel changes the \
-                speed.",
-            words: "mouse walk game first person wasd",
-        },
-        Self {
-            inputs: &["Drag a handle"],
-            label: "Use the gizmo",
-            hint: concat!(
-                "Moves, rotates or scales the selection; hold ",
-                command_key!(),
-                " to snap, or type x 12 Enter."
-            ),
-            words: "mouse move rotate scale handle",
-        },
-        Self {
-            inputs: &["Shift+click"],
-            label: "Extend selection",
-            hint: "Adds the item to the selection, or removes it.",
-            words: "mouse several multiple add left",
-        },
-        Self {
-            inputs: &[concat!(command_key!(), "+drag")],
-            label: "Box select",
-            hint: "Selects everything in a box.",
-            words: "mouse several multiple rectangle marquee left",
-        },
-        Self {
-            inputs: &["Esc", "Right click"],
-            label: "Cancel a drag",
-            hint: "Restores the state before the drag.",
-            words: "mouse abort stop undo",
-        },
-    ];
+    pub const ALL: [Self; 12] = mouse! {
+        ["Click"] "Select"
+            "Selects the item under the pointer; another click selects the one behind it."
+            => "mouse pick choose left";
+        ["Double click"] "Frame"
+            "Frames the object under the pointer; on the background, frames all."
+            => "mouse zoom fit focus left";
+        ["Drag"] "Look around" "Turns the camera; in analysis, orbits the selected object."
+            => "mouse orbit turn rotate view left";
+        ["Alt+drag"] "Orbit" "Orbits the selected object, in fly as well."
+            => "mouse turn rotate around view left";
+        ["Shift+drag", "Middle drag"] "Pan" "Moves the camera sideways."
+            => "mouse shift move view left";
+        ["Wheel", "Pinch"] "Zoom" "Zooms towards the pointer, or away from it."
+            => "mouse scroll near closer far dolly";
+        ["Right click"] "Menu" "Opens the menu of the item under the pointer."
+            => "mouse context";
+        ["Right held"] "Fly"
+            "Flies with W A S D Q E; Shift is fast, Alt is slow, the wheel changes the speed."
+            => "mouse walk game first person wasd";
+        ["Drag a handle"] "Use the gizmo"
+            concat!("Moves, rotates or scales the selection; hold ", command_key!(),
+                " to snap, or type x 12 Enter.")
+            => "mouse move rotate scale handle";
+        ["Shift+click"] "Extend selection" "Adds the item to the selection, or removes it."
+            => "mouse several multiple add left";
+        [concat!(command_key!(), "+drag")] "Box select" "Selects everything in a box."
+            => "mouse several multiple rectangle marquee left";
+        ["Esc", "Right click"] "Cancel a drag" "Restores the state before the drag."
+            => "mouse abort stop undo";
+    };
 }

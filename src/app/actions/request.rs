@@ -114,6 +114,9 @@ pub enum Request {
     Refuse(String),
 }
 
+/// Requests, in the order in which they are answered.
+pub(crate) type Requests = Vec<Request>;
+
 /// How items are added to the selection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Also {
@@ -123,6 +126,20 @@ pub enum Also {
     Only,
     /// Add these items to the selection.
     Add,
+}
+
+impl Request {
+    /// Requests a change of the scene, or reports why it is refused.
+    pub(crate) fn change(
+        label: impl Into<String>,
+        gesture: Gesture,
+        command: Result<Command, Refusal>,
+    ) -> Self {
+        match command {
+            Ok(command) => Self::Change { command, gesture, label: label.into() },
+            Err(refusal) => Self::Refuse(refusal.to_string()),
+        }
+    }
 }
 
 impl From<Action> for Request {
@@ -196,23 +213,15 @@ pub enum LabRequest {
 
 /// Requests a change of the scene, or reports why it is refused.
 pub(crate) fn change(
-    requests: &mut Vec<Request>,
+    requests: &mut Requests,
     label: impl Into<String>,
     gesture: Gesture,
     command: Result<Command, Refusal>,
 ) {
-    requests.push(match command {
-        Ok(command) => Request::Change { command, gesture, label: label.into() },
-        Err(refusal) => Request::Refuse(refusal.to_string()),
-    });
+    requests.push(Request::change(label, gesture, command));
 }
 
-/// Requests a change of the view.
-pub(crate) fn change_view(
-    requests: &mut Vec<Request>,
-    state: &State,
-    change: impl FnOnce(&mut View),
-) {
+pub(crate) fn change_view(requests: &mut Requests, state: &State, change: impl FnOnce(&mut View)) {
     let mut view = state.view.clone();
     change(&mut view);
     requests.push(Request::View(Box::new(view)));

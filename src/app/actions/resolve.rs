@@ -9,8 +9,7 @@ use egui::ThemePreference;
 use super::intent::{ClipboardIntent, FileIntent, Intent};
 use super::table::Action;
 use crate::app::panels::Panel;
-use crate::app::state::layout::Layout;
-use crate::app::state::{DrawingChoices, State};
+use crate::app::state::State;
 use crate::app::widgets::regions::Way;
 use marraztu_core::base::math::Axis;
 use marraztu_core::edit::framing::Side as LookSide;
@@ -25,7 +24,6 @@ use marraztu_core::scene::{
     Command, Fill, Frame, ItemId, LightKind, NormalLength, Normals, ObjectId, Projection, Scene,
     Shape, SpotOwner, Subject, Transformation, View,
 };
-use marraztu_io::Helpers;
 
 type Resolved = Result<Intent, Refusal>;
 
@@ -60,7 +58,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::FindMissing if scene.missing_files().is_empty() => Err(Refusal::NothingMissing),
         Action::FindMissing => file(FileIntent::FindMissing),
         Action::ReloadModels => file(FileIntent::Reload),
-        Action::ToggleWatch => Ok(Intent::Watch),
+        Action::ToggleWatch => show(|state| state.watches ^= true),
         Action::FitExposure => Ok(Intent::FitExposure),
         Action::Save => file(FileIntent::Save),
         Action::SaveAs => file(FileIntent::SaveAs),
@@ -108,10 +106,10 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::SelectAll => {
             let first = selected(state)?;
             let all = several::all(scene, view, &others, |item| state.is_listed(item));
-            Ok(Intent::Others(Others::new(first, all)))
+            show(move |state| state.several = Others::new(first, all))
         }
         Action::SelectNone if others.is_empty() => Err(Refusal::OneSelected),
-        Action::SelectNone => Ok(Intent::Others(Others::default())),
+        Action::SelectNone => show(|state| state.several = Others::default()),
 
         // New items.
         Action::AddGround => add_shape(state, Shape::Ground),
@@ -185,22 +183,19 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
                 other(view.normal_length, NormalLength::Units, NormalLength::BySize);
         }),
         Action::ToggleMarks => viewed(state, |view| view.marks ^= true),
-        Action::ToggleOverlays => Ok(Intent::Overlays),
-        Action::ToggleGizmo => Ok(Intent::Gizmo),
-        Action::ToggleDial => Ok(Intent::Dial),
+        Action::ToggleOverlays => show(|state| state.overlays ^= true),
+        Action::ToggleGizmo => show(|state| state.gizmo ^= true),
+        Action::ToggleDial => show(|state| state.dial.shown ^= true),
         Action::ToggleLoupe => Ok(Intent::Loupe),
         Action::DialDraft | Action::DialDefault | Action::DialExact | Action::DialIdeal => {
             let preset = action.preset().expect("an action of the dial has a preset");
-            Ok(Intent::Settings(preset.of(&state.settings)))
+            show(|state| state.settings = preset.of(&state.settings))
         }
-        Action::ToggleCoarse => Ok(Intent::Coarse),
-        Action::ToggleGrid => helpers(state, |helpers| helpers.grid ^= true),
-        Action::ToggleDimensions => helpers(state, |helpers| helpers.dimensions ^= true),
-        Action::ToggleDirections => helpers(state, |helpers| helpers.directions ^= true),
-        Action::ToggleRefine => {
-            let refines = !state.drawing.refines;
-            Ok(Intent::Drawing(DrawingChoices { refines, ..state.drawing }))
-        }
+        Action::ToggleCoarse => show(|state| state.coarse_while_moving ^= true),
+        Action::ToggleGrid => show(|state| state.helpers.grid ^= true),
+        Action::ToggleDimensions => show(|state| state.helpers.dimensions ^= true),
+        Action::ToggleDirections => show(|state| state.helpers.directions ^= true),
+        Action::ToggleRefine => show(|state| state.drawing.refines ^= true),
         Action::ToggleLightNormals => {
             viewed(state, |view| view.normals = other(view.normals, Normals::Vertex, Normals::Face))
         }
@@ -230,7 +225,10 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::LookRight => look_from(LookSide::Right),
         Action::LookTop => look_from(LookSide::Top),
         Action::WhyUnseen => object(state).map(Intent::WhyUnseen),
-        Action::ExplainPixel => Ok(Intent::Explain),
+        Action::ExplainPixel => show(|state| {
+            state.explaining ^= true;
+            state.aiming = false;
+        }),
         Action::LookBack => look_from(LookSide::Back),
         Action::LookLeft => look_from(LookSide::Left),
         Action::LookBottom => look_from(LookSide::Bottom),
@@ -255,7 +253,13 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::ToggleAllShadows => lights::toggle_all_shadows(scene).map(Intent::Change),
         Action::ToggleShadows => lights::toggle_selected_shadows(scene, view).map(Intent::Change),
         Action::AimAtSelection => each(&|scene, view| aiming::aim_at_selection(scene, view, phase)),
-        Action::AimByClick => aiming::can_aim(scene, view).map(|_| Intent::AimByClick),
+        Action::AimByClick => {
+            aiming::can_aim(scene, view)?;
+            show(|state| {
+                state.aiming ^= true;
+                state.explaining = false;
+            })
+        }
         Action::RedUp => color(Channel::Red, 1),
         Action::RedDown => color(Channel::Red, -1),
         Action::GreenUp => color(Channel::Green, 1),
@@ -266,7 +270,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         // The window.
         Action::ToPanels => Ok(Intent::ChangeKeyboardOwner(Way::On)),
         Action::ToPanelsBack => Ok(Intent::ChangeKeyboardOwner(Way::Back)),
-        Action::Palette => Ok(Intent::Palette),
+        Action::Palette => show(|state| state.palette ^= true),
         Action::LargerText => zoom(state, 0.1),
         Action::SmallerText => zoom(state, -0.1),
         Action::NormalText => Ok(Intent::Zoom(1.0)),
@@ -291,7 +295,6 @@ const fn clipboard(intent: ClipboardIntent) -> Intent {
     Intent::Clipboard(intent)
 }
 
-/// Deletes the selected items.
 fn delete(state: &State, others: &[ItemId]) -> Result<Command, Refusal> {
     selected(state)?;
     several::each(&state.scene, &state.view, others, |scene, view| {
@@ -331,10 +334,8 @@ fn align(state: &State, others: &[ItemId], axis: Axis) -> Resolved {
     arrange::align(scene, view, others, axis, GesturePhase::First).map(Intent::Change)
 }
 
-fn helpers(state: &State, change: impl FnOnce(&mut Helpers)) -> Resolved {
-    let mut helpers = state.helpers;
-    change(&mut helpers);
-    Ok(Intent::Helpers(helpers))
+fn show(change: impl FnOnce(&mut State) + 'static) -> Resolved {
+    Ok(Intent::Show(Box::new(change)))
 }
 
 /// Changes the view in a way that may be refused.
@@ -365,9 +366,9 @@ fn toggle(state: &State, panel: Panel) -> Resolved {
     match panel.info().dock.side().filter(|_| state.narrow) {
         Some(side) => {
             let unfolded = (state.layout.unfolded != Some(side)).then_some(side);
-            Ok(Intent::Layout(Layout { unfolded, ..state.layout }))
+            show(move |state| state.layout.unfolded = unfolded)
         }
-        None => Ok(Intent::Panels(state.panels.toggled(panel))),
+        None => show(move |state| state.panels = state.panels.toggled(panel)),
     }
 }
 

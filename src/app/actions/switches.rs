@@ -7,8 +7,7 @@ use crate::app::state::State;
 use marraztu_core::accuracy::AccuracyPreset;
 use marraztu_core::edit::lights;
 use marraztu_core::scene::{
-    CameraMode, Fill, Frame, ItemId, NormalLength, Normals, Observer, Projection, Subject,
-    Transformation,
+    CameraMode, Fill, Frame, NormalLength, Normals, Observer, Projection, Subject, Transformation,
 };
 
 /// The switches of the lights, in the order of their keys.
@@ -27,14 +26,12 @@ const LIGHT_SWITCHES: [Action; 10] = [
 
 impl Action {
     /// Returns the slot of the light that the action switches.
-    #[must_use]
     pub fn slot(self) -> Option<u32> {
         let at = LIGHT_SWITCHES.iter().position(|action| *action == self)?;
         u32::try_from(at).ok()
     }
 
     /// Returns the preset of the dial that the action chooses.
-    #[must_use]
     pub fn preset(self) -> Option<&'static AccuracyPreset> {
         let place = Self::DIAL.iter().position(|action| *action == self)?;
         AccuracyPreset::dial().get(place)
@@ -45,7 +42,6 @@ impl Action {
         [Self::DialDraft, Self::DialDefault, Self::DialExact, Self::DialIdeal];
 
     /// Returns whether the action's switch is on; `None` if the action is not a switch.
-    #[must_use]
     pub fn is_on(self, state: &State) -> Option<bool> {
         let (scene, view) = (&state.scene, &state.view);
         if let Some(slot) = self.slot() {
@@ -66,11 +62,7 @@ impl Action {
                 Subject::Object => view.frame == Frame::Global,
                 Subject::Light => false,
             },
-            Self::ToggleVisible => match state.selected()? {
-                ItemId::Object(id) => scene.objects.get(id)?.visible,
-                ItemId::Camera(id) => scene.cameras.get(id)?.visible,
-                ItemId::Light(id) => scene.lights.get(id)?.on,
-            },
+            Self::ToggleVisible => state.is_shown(state.selected()?)?,
             Self::ToggleLocked => scene.locked.contains(&state.selected()?),
             Self::ToggleEdges => view.fill == Fill::Edges,
             Self::ToggleEdgesOverFill => view.edges_over_fill,

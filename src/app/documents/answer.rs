@@ -32,7 +32,7 @@ pub(crate) enum Answer {
 }
 
 /// The way a dialog ends.
-pub(super) enum End {
+pub(crate) enum End {
     Cancelled,
     File(PathBuf),
     Material(MaterialChoices),

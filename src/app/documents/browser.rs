@@ -22,7 +22,6 @@ pub(crate) enum Mode {
     Save,
 }
 
-/// A file browser.
 #[derive(Debug)]
 pub(crate) struct Browser {
     title: &'static str,

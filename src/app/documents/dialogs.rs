@@ -9,24 +9,30 @@ use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
 use egui::{Context, Id, Modal, Ui};
+#[cfg(feature = "desktop")]
+use winit::raw_window_handle::{HasDisplayHandle, HasWindowHandle};
 
 use super::answer::{Answer, End};
 use super::browser::{Browser, Choice, Look, Mode};
 use super::folders::{Folders, Kind};
-use super::material_dialog::{self, MaterialDialog};
-use super::picture_dialog::{self, PictureChoices, PictureDialog};
-use super::questions;
+use super::material_dialog::MaterialDialog;
+use super::picture_dialog::{PictureChoices, PictureDialog};
+use super::questions::{self, close_ui};
 use super::wanted::{After, Wanted};
 use crate::app::input::keyboard::Keyboard;
-#[cfg(feature = "desktop")]
-use crate::app::shell::Parent;
 use crate::app::tasks::{Outcome, Task};
-use crate::app::widgets::controls::{heading, take_focus};
+use crate::app::widgets::controls::heading;
 
 /// A system dialog that ends within this time was never shown.
 const AT_ONCE: Duration = Duration::from_millis(400);
 
-/// All open dialogs.
+/// The window as the parent of system dialogs.
+#[cfg(feature = "desktop")]
+pub(crate) trait Parent: HasWindowHandle + HasDisplayHandle {}
+
+#[cfg(feature = "desktop")]
+impl<T: HasWindowHandle + HasDisplayHandle> Parent for T {}
+
 #[derive(Debug, Default)]
 pub(crate) struct Dialogs {
     /// Whether to use the system's file dialogs.
@@ -66,14 +72,18 @@ struct SystemDialog {
 }
 
 #[derive(Debug)]
-enum Dialog {
+pub(crate) enum Dialog {
     Browser(Wanted, Box<Browser>),
     Unsaved(After),
     Material(Box<MaterialDialog>),
     Picture(Box<PictureDialog>),
+    /// An error in one sentence, with a title.
     Fault(&'static str, String),
+    /// The details of a notice, with its text as the title.
     Details(String, Vec<String>),
+    /// The missing files of the scene.
     Missing(Vec<PathBuf>),
+    /// Descriptions of the discarded work.
     Discarded(Vec<String>),
     /// The file of the scene was changed by another program.
     Changed(PathBuf, Option<After>),
@@ -82,19 +92,14 @@ enum Dialog {
 }
 
 impl Dialogs {
+    /// Shows a dialog over all others.
+    pub(crate) fn show(&mut self, dialog: Dialog) {
+        self.open.push(dialog);
+    }
+
     /// Reports an error in one sentence.
     pub(crate) fn tell_fault(&mut self, sentence: String) {
-        self.open.push(Dialog::Fault("Something went wrong", sentence));
-    }
-
-    /// Reports in one sentence why a file was not loaded.
-    pub(crate) fn tell_not_loaded(&mut self, sentence: String) {
-        self.open.push(Dialog::Fault("The file was not loaded", sentence));
-    }
-
-    /// Shows the details of a notice.
-    pub(crate) fn tell_details(&mut self, title: String, lines: Vec<String>) {
-        self.open.push(Dialog::Details(title, lines));
+        self.show(Dialog::Fault("Something went wrong", sentence));
     }
 
     /// Asks whether to save unsaved changes.
@@ -102,31 +107,6 @@ impl Dialogs {
         if !self.open.iter().any(|dialog| matches!(dialog, Dialog::Unsaved(_))) {
             self.open.push(Dialog::Unsaved(after));
         }
-    }
-
-    /// Lists the missing files of the scene.
-    pub(crate) fn list_missing(&mut self, files: Vec<PathBuf>) {
-        self.open.push(Dialog::Missing(files));
-    }
-
-    /// Lists the discarded work.
-    pub(crate) fn list_discarded(&mut self, all: Vec<String>) {
-        self.open.push(Dialog::Discarded(all));
-    }
-
-    /// Asks what to do with a scene after another program has changed its file.
-    pub(crate) fn ask_changed(&mut self, path: PathBuf, after: Option<After>) {
-        self.open.push(Dialog::Changed(path, after));
-    }
-
-    /// Sets the folder of the next dialog that opens a file.
-    pub(crate) fn begin_in(&mut self, folder: Option<PathBuf>) {
-        self.folders.open_in(folder);
-    }
-
-    /// Asks for a material.
-    pub(crate) fn ask_material(&mut self, dialog: MaterialDialog) {
-        self.open.push(Dialog::Material(Box::new(dialog)));
     }
 
     /// Returns whether a dialog of the window is open; system dialogs do not count.
@@ -140,26 +120,11 @@ impl Dialogs {
         self.open.push(Dialog::Picture(Box::new(dialog)));
     }
 
-    /// Returns the file of the model in the material dialog.
-    pub(crate) fn model_file(&self) -> Option<&Path> {
-        self.open.iter().rev().find_map(|dialog| match dialog {
-            Dialog::Material(material) => material.loaded.as_ref().map(|(path, _)| path.as_path()),
+    pub(crate) fn material(&mut self) -> Option<&mut MaterialDialog> {
+        self.open.iter_mut().rev().find_map(|dialog| match dialog {
+            Dialog::Material(material) => Some(&mut **material),
             _ => None,
         })
-    }
-
-    /// Sets the texture of the model in the material dialog.
-    pub(crate) fn set_texture(&mut self, path: PathBuf) {
-        for dialog in self.open.iter_mut().rev() {
-            if let Dialog::Material(material) = dialog {
-                return material.set_texture(path);
-            }
-        }
-    }
-
-    /// Returns whether a material dialog is open.
-    pub(crate) fn asks_material(&self) -> bool {
-        self.open.iter().any(|dialog| matches!(dialog, Dialog::Material(_)))
     }
 
     /// Asks for a file and proposes `name`.
@@ -377,20 +342,8 @@ impl Dialog {
             Self::Discarded(all) => questions::discarded_ui(ui, all),
             Self::Changed(path, after) => questions::changed_ui(ui, path, after.as_ref()),
             Self::Replace(path, answer) => questions::replace_ui(ui, path, answer),
-            Self::Material(dialog) => dialog.ui(ui).map(|end| match end {
-                material_dialog::End::Taken(choices) => End::Material(choices),
-                material_dialog::End::Texture => End::Asked,
-                material_dialog::End::Cancelled => End::Cancelled,
-            }),
-            Self::Picture(dialog) => dialog.ui(ui).map(|end| match end {
-                picture_dialog::End::Into(choices, path) => {
-                    End::Answer(Answer::Picture(choices, Some(path)))
-                }
-                picture_dialog::End::Elsewhere(choices) => {
-                    End::Answer(Answer::Picture(choices, None))
-                }
-                picture_dialog::End::Cancelled => End::Cancelled,
-            }),
+            Self::Material(dialog) => dialog.ui(ui),
+            Self::Picture(dialog) => dialog.ui(ui),
             Self::Fault(title, sentence) => {
                 ui.set_max_width(420.0);
                 heading(ui, *title);
@@ -411,10 +364,4 @@ impl Dialog {
             }
         }
     }
-}
-
-fn close_ui(ui: &mut Ui) -> Option<End> {
-    let button = ui.button("Close");
-    take_focus(ui, &button);
-    button.clicked().then_some(End::Cancelled)
 }

@@ -114,7 +114,6 @@ pub(crate) struct Opening {
     pub(crate) result: Result<Opened, SceneFileError>,
 }
 
-/// Returns whether a path names a scene.
 pub(crate) fn is_scene(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case(SCENE_ENDING))
 }

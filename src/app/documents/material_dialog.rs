@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use egui::Ui;
 
+use super::answer::End;
 use crate::app::widgets::color_picker::swatch;
 use crate::app::widgets::controls::{Switch, heading, take_focus};
 use crate::app::widgets::spheres::{self, Sphere};
@@ -15,7 +16,6 @@ use marraztu_core::scene::{
 };
 use marraztu_io::{Finding, Loaded};
 
-/// The material dialog.
 #[derive(Debug)]
 pub(crate) struct MaterialDialog {
     /// The model and its file; `None` if the material is for a camera.
@@ -26,19 +26,11 @@ pub(crate) struct MaterialDialog {
     crease: f64,
 }
 
-/// The choices made.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct MaterialChoices {
     pub(crate) material: MaterialChoice,
     pub(crate) options: LoadOptions,
     pub(crate) texture: Option<PathBuf>,
-}
-
-/// The way the dialog ends.
-pub(crate) enum End {
-    Taken(MaterialChoices),
-    Texture,
-    Cancelled,
 }
 
 impl MaterialDialog {
@@ -91,7 +83,7 @@ impl MaterialDialog {
             let take = ui.button(if self.loaded.is_some() { "Load" } else { "Add" });
             take_focus(ui, &take);
             if take.clicked() {
-                end = Some(End::Taken(self.choices.clone()));
+                end = Some(End::Material(self.choices.clone()));
             }
             if ui.button("Cancel").clicked() {
                 end = Some(End::Cancelled);
@@ -189,7 +181,7 @@ impl MaterialDialog {
                 let texture = self.choices.texture.as_deref().map(file_name);
                 ui.label(format!("Texture: {}", texture.as_deref().unwrap_or("the file's own")));
                 if ui.button("Choose...").clicked() {
-                    end = Some(End::Texture);
+                    end = Some(End::Asked);
                 }
                 if texture.is_some() && ui.button("Remove").clicked() {
                     self.choices.texture = None;

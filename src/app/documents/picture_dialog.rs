@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use egui::{DragValue, Key, Ui};
 use serde::{Deserialize, Serialize};
 
-use crate::app::widgets::controls::{Choice, Switch, choices as choices_ui, heading, take_focus};
+use super::answer::{Answer, End};
+use crate::app::widgets::controls::{Switch, choose, heading, take_focus};
 use marraztu_core::accuracy::Samples;
 use marraztu_core::base::image::Size;
 use marraztu_core::edit::turntable::Turn;
@@ -30,7 +31,6 @@ impl Purpose {
     }
 }
 
-/// The options.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct PictureChoices {
     pub(crate) purpose: Purpose,
@@ -70,17 +70,6 @@ impl PictureChoices {
     }
 }
 
-/// The way the dialog ends.
-#[derive(Debug)]
-pub(crate) enum End {
-    Cancelled,
-    /// Save with these options into this file.
-    Into(PictureChoices, PathBuf),
-    /// Save with these options and ask for the file.
-    Elsewhere(PictureChoices),
-}
-
-/// The dialog of options.
 #[derive(Debug)]
 pub(crate) struct PictureDialog {
     choices: PictureChoices,
@@ -162,10 +151,10 @@ impl PictureDialog {
             let save = ui.button(if replaces { "Replace..." } else { "Save" });
             take_focus(ui, &save);
             if save.clicked() || entered {
-                end = Some(End::Into(self.choices, path));
+                end = Some(End::Answer(Answer::Picture(self.choices, Some(path))));
             }
             if ui.button("Browse...").on_hover_text("Chooses another folder or name").clicked() {
-                end = Some(End::Elsewhere(self.choices));
+                end = Some(End::Answer(Answer::Picture(self.choices, None)));
             }
             if ui.button("Cancel").clicked() {
                 end = Some(End::Cancelled);
@@ -196,17 +185,10 @@ impl PictureDialog {
     }
 
     fn samples_ui(&mut self, ui: &mut Ui) {
-        let counts = Samples::ALL.map(|samples| samples.count().to_string());
-        let now = self.choices.samples;
         let hint = "Smooths edges; more samples take longer.";
-        let all: Vec<Choice<'_>> = Samples::ALL
-            .iter()
-            .zip(&counts)
-            .map(|(samples, count)| Choice::new("Samples per pixel", count, now == *samples, hint))
-            .collect();
-        if let Some(clicked) = choices_ui(ui, &all) {
-            self.choices.samples = Samples::ALL[clicked];
-        }
+        let all = Samples::ALL.map(|samples| (samples.count().to_string(), samples, hint));
+        let now = &mut self.choices.samples;
+        *now = choose(ui, "Samples per pixel", *now, &all).unwrap_or(*now);
     }
 
     fn turn_ui(&mut self, ui: &mut Ui) {
@@ -227,11 +209,7 @@ impl PictureDialog {
             ),
             ("Camera", Turn::Camera, "Moves the camera around the objects."),
         ];
-        let all =
-            turns.map(|(label, turn, hint)| Choice::new("Turn", label, choices.turn == turn, hint));
-        if let Some(clicked) = choices_ui(ui, &all) {
-            choices.turn = turns[clicked].1;
-        }
+        choices.turn = choose(ui, "Turn", choices.turn, &turns).unwrap_or(choices.turn);
         ui.end_row();
     }
 }

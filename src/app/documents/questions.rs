@@ -11,7 +11,6 @@ use super::wanted::{After, ChangedFile};
 use crate::app::widgets::controls::{heading, take_focus};
 use crate::app::widgets::text::file_name;
 
-/// The width of a question.
 const WIDTH: f32 = 440.0;
 
 pub(super) fn unsaved_ui(ui: &mut Ui, after: &After) -> Option<End> {
@@ -118,9 +117,7 @@ pub(super) fn missing_ui(ui: &mut Ui, files: &[PathBuf]) -> Option<End> {
         }
     });
     ui.add_space(4.0);
-    let close = ui.button("Close");
-    take_focus(ui, &close);
-    if close.clicked() { Some(End::Cancelled) } else { answer }
+    close_ui(ui).or(answer)
 }
 
 /// Lists the discarded work.
@@ -141,7 +138,12 @@ pub(super) fn discarded_ui(ui: &mut Ui, all: &[String]) -> Option<End> {
         }
     });
     ui.add_space(4.0);
-    let close = ui.button("Close");
-    take_focus(ui, &close);
-    if close.clicked() { Some(End::Cancelled) } else { answer }
+    close_ui(ui).or(answer)
+}
+
+/// Shows the button that closes a dialog without a question.
+pub(super) fn close_ui(ui: &mut Ui) -> Option<End> {
+    let button = ui.button("Close");
+    take_focus(ui, &button);
+    button.clicked().then_some(End::Cancelled)
 }

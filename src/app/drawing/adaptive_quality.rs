@@ -140,7 +140,6 @@ impl AdaptiveQuality {
         self.part.or(whole.map(|whole| whole.mul_f64(share)))
     }
 
-    /// Records the time of a frame.
     pub(crate) fn record(&mut self, reduction: Reduction, share: f64, time: Duration) {
         let again = std::mem::replace(&mut self.last, reduction) == reduction;
         if reduction != Reduction::NONE {

@@ -6,8 +6,7 @@
 use super::snapshot::{Snapshot, pictured};
 use super::viewport_renderer::Finer;
 use marraztu_core::accuracy::{Samples, Settings, Shot};
-use marraztu_core::base::image::{Picture, Size};
-use marraztu_core::scene::{Scene, View};
+use marraztu_core::base::image::Picture;
 use marraztu_lab::dial::{Dial, Figures, Step, of_dial};
 use marraztu_render::screen::coverage::PixelBox;
 use marraztu_render::{Renderer, plan_frame};
@@ -25,16 +24,12 @@ pub(crate) struct DialWish {
 /// Everything that the figures of the dial depend on.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Dialled {
-    pub(crate) scene: Scene,
-    /// The view, without what the picture does not show.
-    pub(crate) view: View,
-    pub(crate) size: Size,
-    /// The models; all other axes are at their defaults.
-    pub(crate) models: Settings,
+    /// The models, with all other axes at their defaults, and the view without what the picture
+    /// does not show.
+    pub(crate) shot: Shot,
     pub(crate) wish: DialWish,
 }
 
-/// The figures of the dial.
 #[derive(Clone, Debug)]
 pub(crate) struct DialFigures {
     pub(crate) of: Dialled,
@@ -44,16 +39,11 @@ pub(crate) struct DialFigures {
 }
 
 impl Dialled {
-    pub(crate) fn of(
-        (scene, view): (&Scene, &View),
-        settings: &Settings,
-        size: Size,
-        wish: DialWish,
-    ) -> Self {
-        let models = Settings::default().modelled_as(settings);
-        let own = wish.own.map(|own| own.modelled_as(settings));
-        let wish = DialWish { own, ..wish };
-        Self { scene: scene.clone(), view: pictured(view), size, models, wish }
+    pub(crate) fn of(shot: &Shot, wish: DialWish) -> Self {
+        let own = wish.own.map(|own| own.modelled_as(&shot.settings));
+        let settings = Settings::default().modelled_as(&shot.settings);
+        let shot = Shot { view: pictured(&shot.view), ..shot.with(settings) };
+        Self { shot, wish: DialWish { own, ..wish } }
     }
 
     /// Returns settings as the window shows them at rest.
@@ -61,17 +51,12 @@ impl Dialled {
         self.wish.refined.map_or(*settings, |samples| settings.refined_to(samples))
     }
 
-    /// Returns the settings of all pictures.
     fn all(&self) -> Vec<Settings> {
-        let presets = of_dial(&self.models, self.wish.refined).map(|(_, settings)| settings);
+        let presets = of_dial(&self.shot.settings, self.wish.refined).map(|(_, settings)| settings);
         let mut all: Vec<Settings> = presets.collect();
         let own = self.wish.own.map(|own| self.at_rest(&own));
         all.extend(own.filter(|own| !all.contains(own)));
         all
-    }
-
-    fn shot(&self) -> Shot {
-        Shot::new(&self.scene, &self.view, &self.models, self.size)
     }
 }
 
@@ -92,11 +77,10 @@ impl IdleDial {
         snapshot: &Snapshot,
         wanted: &(dyn Fn() -> bool + Sync),
     ) -> Finer {
-        let Some(wish) = snapshot.dial else { return Finer::Done };
-        let Snapshot { scene, view, settings, size, .. } = snapshot;
-        let of = Dialled::of((scene, view), settings, *size, wish);
+        let Some(wish) = snapshot.options.dial else { return Finer::Done };
+        let of = Dialled::of(&snapshot.shot, wish);
         if self.of.as_ref() != Some(&of) {
-            self.dial = Some(Dial::new(&of.shot(), &of.all()));
+            self.dial = Some(Dial::new(&of.shot, &of.all()));
             self.of = Some(of.clone());
         }
         let Some(dial) = &mut self.dial else { return Finer::Done };
@@ -118,8 +102,7 @@ impl IdleDial {
         window: PixelBox,
         wanted: &(dyn Fn() -> bool + Sync),
     ) -> Option<Picture> {
-        let Snapshot { scene, view, settings, size, .. } = snapshot;
-        let plan = plan_frame(&Shot::new(scene, view, &settings.ideal(), *size));
+        let plan = plan_frame(&snapshot.shot.with(snapshot.shot.settings.ideal()));
         self.renderer.render_window(&plan, window, wanted).ok()
     }
 }

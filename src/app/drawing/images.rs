@@ -9,6 +9,28 @@ use egui::ColorImage;
 
 use marraztu_core::base::image::{Picture, Size};
 
+/// The form of an image in a message: its size. Its pixels follow the message.
+pub(super) mod without_pixels {
+    use std::sync::Arc;
+
+    use egui::ColorImage;
+    use serde::{Deserialize, Deserializer, Serialize as _, Serializer};
+
+    pub(crate) fn serialize<S: Serializer>(
+        image: &Arc<ColorImage>,
+        to: S,
+    ) -> Result<S::Ok, S::Error> {
+        image.size.serialize(to)
+    }
+
+    pub(crate) fn deserialize<'a, D: Deserializer<'a>>(
+        from: D,
+    ) -> Result<Arc<ColorImage>, D::Error> {
+        let size = Deserialize::deserialize(from)?;
+        Ok(Arc::new(ColorImage { size, ..ColorImage::default() }))
+    }
+}
+
 /// Copies a picture into a free image and moves that image to the end.
 pub(super) fn present(images: &mut [Arc<ColorImage>; 3], picture: &Picture) {
     let [first, second, _] = images;
@@ -31,7 +53,6 @@ fn show(picture: &Picture, image: &mut ColorImage) {
     bytes.copy_from_slice(picture.pixels());
 }
 
-/// Returns the picture that an image of the viewport shows.
 pub(crate) fn picture(image: &ColorImage) -> Option<Picture> {
     let [width, height] = image.size;
     let pixels: &[[u8; 4]] = bytemuck::cast_slice(&image.pixels);

@@ -18,11 +18,9 @@ pub enum Shrink {
 }
 
 impl Shrink {
-    /// All factors.
     const ALL: [Self; 3] = [Self::Whole, Self::Half, Self::Quarter];
 
     /// Returns the side, in pixels, of the square that shows one drawn pixel.
-    #[must_use]
     pub const fn factor(self) -> usize {
         match self {
             Self::Whole => 1,
@@ -110,7 +108,6 @@ impl Reduction {
     }
 
     /// Describes the reduction: "light per vertex, half size". Empty at full quality.
-    #[must_use]
     pub fn words(self) -> String {
         let words = [
             (self.one_sample, "one sample"),

@@ -11,8 +11,8 @@ use marraztu_core::base::image::Picture;
 
 /// Returns the next number of samples per pixel, if the picture is refined to `refined`.
 pub(crate) fn next_samples(wanted: &Snapshot, refined: Option<Samples>) -> Option<Samples> {
-    let most = wanted.refined?.count();
-    let now = refined.unwrap_or(wanted.settings.samples).count();
+    let most = wanted.options.refined?.count();
+    let now = refined.unwrap_or(wanted.shot.settings.samples).count();
     Samples::ALL.into_iter().find(|next| next.count() > now && next.count() <= most)
 }
 

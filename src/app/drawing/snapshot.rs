@@ -2,18 +2,22 @@
 
 use std::time::Duration;
 
+use serde::{Deserialize, Serialize};
+
 use super::dial::DialWish;
-use marraztu_core::accuracy::{Samples, Settings};
-use marraztu_core::base::image::Size;
-use marraztu_core::scene::{Frame, ItemId, Scene, Steps, Subject, Transformation, View};
+use marraztu_core::accuracy::{Samples, Shot};
+use marraztu_core::scene::{Frame, ItemId, Steps, Subject, Transformation, View};
 
 /// All inputs of a picture.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Snapshot {
-    pub(crate) scene: Scene,
-    pub(crate) view: View,
-    pub(crate) settings: Settings,
-    pub(crate) size: Size,
+    pub(crate) shot: Shot,
+    pub(crate) options: DrawOptions,
+}
+
+/// The way of the window to draw a picture.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct DrawOptions {
     /// Whether the scene is moving. If it is, the picture may be drawn at reduced quality.
     pub(crate) moving: bool,
     /// Whether the user allows reduced quality.
@@ -46,10 +50,8 @@ pub(crate) fn pictured(view: &View) -> View {
 impl Snapshot {
     /// Returns whether another snapshot differs in more than the time.
     pub(crate) fn differs_from(&self, other: &Self) -> bool {
-        let Self { scene, view, settings, size, moving: _, .. } = self;
-        let view = |of: &View| View { time: view.time, ..of.clone() };
-        (*settings, *size) != (other.settings, other.size)
-            || *scene != other.scene
-            || self.view != view(&other.view)
+        let mut shot = other.shot.clone();
+        shot.view.time = self.shot.view.time;
+        self.shot != shot
     }
 }

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use egui::ColorImage;
+use serde::{Deserialize, Serialize};
 
 use super::adaptive_quality::{AdaptiveQuality, Attempt};
 use super::border::Border;
@@ -14,8 +15,8 @@ use super::dial::{DialFigures, IdleDial};
 use super::images::present;
 use super::reduction::{Applicable, Reduction};
 use super::refinement::{difference, next_samples};
-use super::snapshot::Snapshot;
-use marraztu_core::accuracy::{Samples, Shot};
+use super::snapshot::{DrawOptions, Snapshot};
+use marraztu_core::accuracy::{Samples, Settings, Shot};
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{ItemId, Surface};
 use marraztu_lab::cost::{self, Explained};
@@ -23,14 +24,13 @@ use marraztu_render::plan_frame;
 use marraztu_render::screen::coverage::PixelBox;
 use marraztu_render::{Cancelled, Damage, FramePlan, Hit, Renderer};
 
-/// A drawn picture.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(crate) struct Drawn {
+    #[serde(with = "super::images::without_pixels")]
     pub(crate) image: Arc<ColorImage>,
     /// The time from the snapshot to the finished picture in memory.
     pub(crate) time: Duration,
     pub(crate) triangles: usize,
-    /// The reduction of its quality.
     pub(crate) reduction: Reduction,
     /// The measured error of that reduction, in steps of a byte.
     pub(crate) lost: Option<f64>,
@@ -118,8 +118,8 @@ impl ViewportRenderer {
         let mut plan = planned(wanted, Reduction::NONE);
         let mut changes = self.renderer.damage(&plan);
         let share = share(&changes);
-        let reduction =
-            self.quality.choose(wanted.moving, share, applicable(wanted), wanted.budget);
+        let DrawOptions { moving, budget, .. } = wanted.options;
+        let reduction = self.quality.choose(moving, share, applicable(wanted), budget);
         if reduction != Reduction::NONE && !changes.is_nothing() {
             plan = planned(wanted, reduction);
             changes = self.renderer.damage(&plan);
@@ -129,7 +129,8 @@ impl ViewportRenderer {
         }
         // A newer request cancels this frame only if the frame is too slow; see `Attempt`.
         let expected = self.quality.expected(reduction, share);
-        let attempt = Attempt { reduction, expected, second: self.gave_up, budget: wanted.budget };
+        let attempt =
+            Attempt { reduction, expected, second: self.gave_up, budget: wanted.options.budget };
         let clock = self.clock;
         let wanted = || match asked() {
             Asked::This => true,
@@ -167,7 +168,7 @@ impl ViewportRenderer {
     /// Shows the picture as it was before refinement, if it is refined further than requested.
     fn unrefined(&mut self, wanted: &Snapshot, changes: Damage) -> Option<Drawn> {
         let refined = self.refined?;
-        if wanted.refined.is_some_and(|most| most.count() >= refined.count()) {
+        if wanted.options.refined.is_some_and(|most| most.count() >= refined.count()) {
             return None;
         }
         self.refined = None;
@@ -182,14 +183,14 @@ impl ViewportRenderer {
         snapshot: &Snapshot,
         wanted: &(dyn Fn() -> bool + Sync),
     ) -> Finer {
-        if snapshot.moving || self.gave_up || self.shown != Some(Reduction::NONE) {
+        if snapshot.options.moving || self.gave_up || self.shown != Some(Reduction::NONE) {
             return Finer::Done;
         }
         // Measurements come first: they decide the quality of the next drag.
         let applicable = applicable(snapshot);
         let begun = (self.clock)();
-        let measured = self.quality.unmeasured(applicable, snapshot.budget);
-        if let Some(reduction) = measured.filter(|_| snapshot.coarse) {
+        let measured = self.quality.unmeasured(applicable, snapshot.options.budget);
+        if let Some(reduction) = measured.filter(|_| snapshot.options.coarse) {
             if self.finer.redraw(&planned(snapshot, reduction), wanted).is_err() {
                 return Finer::Disturbed;
             }
@@ -203,8 +204,8 @@ impl ViewportRenderer {
         let Some(samples) = next_samples(snapshot, self.refined) else {
             return self.dial.step(snapshot, wanted);
         };
-        let settings = marraztu_core::accuracy::Settings { samples, ..snapshot.settings };
-        let shot = Shot::new(&snapshot.scene, &snapshot.view, &settings, snapshot.size);
+        let settings = Settings { samples, ..snapshot.shot.settings };
+        let shot = snapshot.shot.with(settings);
         let Ok(changes) = self.finer.redraw(&plan_frame(&shot), wanted) else {
             return Finer::Disturbed;
         };
@@ -217,15 +218,14 @@ impl ViewportRenderer {
     /// Explains the effects of the last finished picture; `None` if that is not requested or has
     /// not changed.
     pub(crate) fn explain(&mut self, wanted: &Snapshot) -> Option<Arc<Explained>> {
-        if !wanted.explain {
+        if !wanted.options.explain {
             self.explained = None;
             return None;
         }
         if self.gave_up {
             return None;
         }
-        let (settings, size) = self.shown?.applied(wanted.settings, wanted.size);
-        let of = Shot::new(&wanted.scene, &wanted.view, &settings, size);
+        let of = reduced(wanted, self.shown?);
         let explained = cost::explain_with(&mut self.renderer, &of);
         if self.explained.as_deref() == Some(&explained) {
             return None;
@@ -244,6 +244,20 @@ impl ViewportRenderer {
         self.dial.ideal(last, window, wanted)
     }
 
+    /// Returns whether the last picture was cancelled for a newer one.
+    pub(crate) const fn was_given_up(&self) -> bool {
+        self.gave_up
+    }
+
+    /// Finds one border around the visible parts of several items, filed under the id of one of
+    /// them.
+    pub(crate) fn border(&mut self, item: ItemId, all: &[ItemId]) -> Option<Border> {
+        self.shown?;
+        let [width, height] = self.images[2].size;
+        let own = self.renderer.pixels_of_any(all);
+        Some(Border::of(item, Size::new(width, height), &own))
+    }
+
     /// Returns the hit at a pixel of the picture at full size.
     pub(crate) fn hit(&mut self, [x, y]: [usize; 2]) -> Option<Hit> {
         let by = self.shown?.shrink.factor();
@@ -252,8 +266,12 @@ impl ViewportRenderer {
 }
 
 fn planned(wanted: &Snapshot, reduction: Reduction) -> FramePlan {
-    let (settings, size) = reduction.applied(wanted.settings, wanted.size);
-    plan_frame(&Shot::new(&wanted.scene, &wanted.view, &settings, size))
+    plan_frame(&reduced(wanted, reduction))
+}
+
+fn reduced(wanted: &Snapshot, reduction: Reduction) -> Shot {
+    let (settings, size) = reduction.applied(wanted.shot.settings, wanted.shot.size);
+    Shot { settings, size, ..wanted.shot.clone() }
 }
 
 /// Returns the part of the picture that is redrawn, from 0 to 1.
@@ -263,32 +281,11 @@ fn share(changes: &Damage) -> f64 {
 }
 
 fn applicable(wanted: &Snapshot) -> Applicable {
-    let textured = wanted.scene.objects.iter().any(|(_, object)| {
+    let textured = wanted.shot.scene.objects.iter().any(|(_, object)| {
         let own = object.model.materials.iter().any(|material| material.texture.is_some());
         object.visible && object.surface != Surface::Material && (own || object.texture.is_some())
     });
-    Applicable { settings: wanted.settings, textured }
-}
-
-impl ViewportRenderer {
-    /// Returns whether the last picture was cancelled for a newer one.
-    pub(crate) const fn was_given_up(&self) -> bool {
-        self.gave_up
-    }
-
-    /// Finds the border around the visible part of an item.
-    pub(crate) fn border(&mut self, item: ItemId) -> Option<Border> {
-        self.border_of(item, &[item])
-    }
-
-    /// Finds one border around the visible parts of several items, filed under the id of one of
-    /// them.
-    pub(crate) fn border_of(&mut self, item: ItemId, all: &[ItemId]) -> Option<Border> {
-        self.shown?;
-        let [width, height] = self.images[2].size;
-        let own = self.renderer.pixels_of_any(all);
-        Some(Border::of(item, Size::new(width, height), &own))
-    }
+    Applicable { settings: wanted.shot.settings, textured }
 }
 
 #[cfg(test)]
@@ -300,35 +297,29 @@ mod tests {
     use super::*;
     use crate::app::drawing::border::Run;
     use crate::app::state::Statistics;
-    use marraztu_core::accuracy::Settings;
     use marraztu_core::base::color::Color;
+    use marraztu_core::edit::items;
     use marraztu_core::scene::Command;
     use marraztu_io as io;
 
     fn snapshot(size: Size) -> Snapshot {
         let (scene, view) = io::default_scene();
         let budget = Duration::from_millis(33);
-        let (settings, moving, explain, outlined) = (Settings::default(), false, false, Vec::new());
-        let (coarse, refined, dial) = (true, None, None);
-        Snapshot {
-            scene,
-            view,
-            settings,
-            size,
-            moving,
-            coarse,
-            budget,
-            refined,
-            dial,
-            explain,
-            outlined,
-        }
+        let (moving, coarse, refined, dial, explain) = (false, true, None, None, false);
+        let outlined = Vec::new();
+        let options = DrawOptions { moving, coarse, budget, refined, dial, explain, outlined };
+        Snapshot { shot: Shot::new(&scene, &view, &Settings::default(), size), options }
+    }
+
+    fn moving(mut snapshot: Snapshot) -> Snapshot {
+        snapshot.options.moving = true;
+        snapshot
     }
 
     /// Changes the background colour of a snapshot, which requires a full redraw.
     fn recolored(snapshot: &Snapshot, gray: u8) -> Snapshot {
         let mut other = snapshot.clone();
-        Command::Background(Color([gray; 3])).apply(&mut other.scene).unwrap();
+        Command::Background(Color([gray; 3])).apply(&mut other.shot.scene).unwrap();
         other
     }
 
@@ -359,7 +350,8 @@ mod tests {
         let mut statistics = Statistics::default();
         let first = renderer.draw(&wanted, &this).unwrap();
         statistics.note(&first, 1);
-        let finer = Snapshot { refined: Some(Samples::Four), ..wanted.clone() };
+        let mut finer = wanted.clone();
+        finer.options.refined = Some(Samples::Four);
         assert!(matches!(renderer.refine(&finer, &|| true), Finer::Refined(_)));
         // Withdrawing the refinement shows the earlier picture again and takes no time.
         let again = renderer.draw(&wanted, &this).unwrap();
@@ -374,7 +366,7 @@ mod tests {
     #[test]
     fn a_border_runs_round_all_pixels_of_an_item_and_no_others() {
         let wanted = snapshot(Size::new(160, 120));
-        let (size, item) = (wanted.size, ItemId::Object(wanted.view.object.unwrap()));
+        let (size, item) = (wanted.shot.size, ItemId::Object(wanted.shot.view.object.unwrap()));
         let mut renderer = ViewportRenderer::new(Instant::now);
         renderer.draw(&wanted, &this).unwrap();
         let places = || (0..size.height).flat_map(|y| (0..size.width).map(move |x| (x, y)));
@@ -383,7 +375,7 @@ mod tests {
             .collect();
         assert_eq!(own, renderer.renderer.pixels_of(item));
         let is_own = |x: usize, y: usize| own[y * size.width + x];
-        let border = renderer.border(item).unwrap();
+        let border = renderer.border(item, &[item]).unwrap();
         let pixels = |runs: &[Run]| -> Vec<(usize, usize)> {
             runs.iter().flat_map(|run| (0..run.length).map(|i| (run.x + i, run.y))).collect()
         };
@@ -403,11 +395,11 @@ mod tests {
         let mut renderer = ViewportRenderer::new(Instant::now);
         let mut wanted = snapshot(Size::new(16, 12));
         assert!(renderer.draw(&wanted, &this).is_some());
-        wanted.view.subject = marraztu_core::scene::Subject::Light;
+        wanted.shot.view.subject = marraztu_core::scene::Subject::Light;
         assert!(renderer.draw(&wanted, &this).is_none());
-        wanted.moving = true;
+        wanted.options.moving = true;
         assert!(renderer.draw(&wanted, &this).is_none());
-        wanted.view.back_faces = true;
+        wanted.shot.view.back_faces = true;
         assert!(renderer.draw(&wanted, &this).is_some());
     }
 
@@ -418,7 +410,7 @@ mod tests {
         let first = renderer.draw(&still, &this).unwrap();
         assert_eq!((first.reduction, first.image.size), (Reduction::NONE, [161, 120]));
         for i in 0..11 {
-            let moving = Snapshot { moving: true, ..recolored(&still, i) };
+            let moving = moving(recolored(&still, i));
             let drawn = renderer.draw(&moving, &this).unwrap();
             // Every frame takes 40 ms: each reduction is tried twice, and none keeps the budget.
             let half = "light per vertex, half size";
@@ -440,14 +432,14 @@ mod tests {
         let mut renderer = ViewportRenderer::new(slow);
         let still = snapshot(Size::new(160, 120));
         renderer.draw(&still, &this).unwrap();
-        let item = ItemId::Object(still.view.object.unwrap());
+        let item = ItemId::Object(still.shot.view.object.unwrap());
         let places = |renderer: &mut ViewportRenderer| {
             let all = (0..120).flat_map(|y| (0..160).map(move |x| [x, y]));
             let own = all.filter(|at| renderer.hit(*at).is_some_and(|hit| hit.item == item));
             own.fold([0, 0, 0], |[n, x, y], at| [n + 1, x + at[0], y + at[1]])
         };
         let [count, x, y] = places(&mut renderer);
-        let mut moving = Snapshot { moving: true, ..still.clone() };
+        let mut moving = moving(still.clone());
         let mut drawn = None;
         for gray in 0..3 {
             moving = recolored(&moving, gray);
@@ -459,7 +451,7 @@ mod tests {
         let near = |a: usize, b: usize, by: usize| a.abs_diff(b) <= by;
         assert!(near(count, half_count, count / 5), "{count} {half_count}");
         assert!(near(x / count, half_x / half_count, 2) && near(y / count, half_y / half_count, 2));
-        assert_eq!(renderer.border(item).unwrap().size, Size::new(80, 60));
+        assert_eq!(renderer.border(item, &[item]).unwrap().size, Size::new(80, 60));
     }
 
     #[test]
@@ -485,10 +477,9 @@ mod tests {
         let mut renderer = ViewportRenderer::new(Instant::now);
         let mut wanted = snapshot(Size::new(640, 480));
         renderer.draw(&wanted, &this).unwrap();
-        let (id, _) = wanted.scene.objects.iter().next().unwrap();
-        let command =
-            marraztu_core::edit::items::toggle_shown(&wanted.scene, ItemId::Object(id)).unwrap();
-        command.apply(&mut wanted.scene).unwrap();
+        let (id, _) = wanted.shot.scene.objects.iter().next().unwrap();
+        let command = items::toggle_shown(&wanted.shot.scene, ItemId::Object(id));
+        command.unwrap().apply(&mut wanted.shot.scene).unwrap();
         let drawn = renderer.draw(&wanted, &this).unwrap();
         assert!((1..40).contains(&drawn.changes.tiles()), "{:?}", drawn.changes);
         let mut fresh = ViewportRenderer::new(Instant::now);

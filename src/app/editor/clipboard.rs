@@ -10,6 +10,7 @@ use crate::app::actions::ClipboardIntent;
 use crate::app::documents::loading::Fetched;
 use crate::app::input::keyboard::Keyboard;
 use crate::app::state::State;
+use crate::app::widgets::text::one_or_count;
 use marraztu_core::edit::{Gesture, Refusal, copies, items, several};
 use marraztu_core::scene::{ItemId, MaterialChoice, ObjectId, Subject};
 use marraztu_io::{self as io, Fragment, Known, LoadError, SceneFileError};
@@ -94,10 +95,7 @@ impl App {
         let names = objects.iter().map(|(_, it)| &it.name);
         let names = names.chain(cameras.iter().map(|(_, it)| &it.name));
         let names: Vec<&String> = names.chain(lights.iter().map(|(_, it)| &it.name)).collect();
-        let what = match names[..] {
-            [name] => name.clone(),
-            _ => format!("{} items", names.len()),
-        };
+        let what = one_or_count(&names, "items", |name| (*name).clone());
         // The kind of the first pasted items becomes the subject.
         let subject = match (objects.is_empty(), lights.is_empty()) {
             (false, _) => Subject::Object,

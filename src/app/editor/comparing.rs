@@ -7,49 +7,11 @@
 use egui::Context;
 
 use super::App;
-use super::jobs::{Answers, Job};
-use crate::app::state::State;
+use super::jobs::{Answers, Elsewhere, Job};
 use crate::app::state::laboratory::{Compare, Judged};
 use crate::app::tasks::{Outcome, Task};
 use crate::app::viewport::comparison::{Compared, Drawing, draw};
-use marraztu_core::scene::View;
 use marraztu_io as io;
-
-/// A comparison by another instance.
-#[derive(Debug, Default)]
-pub(crate) struct Comparing {
-    /// The job, until it is taken.
-    job: Option<Job>,
-    /// Receives the pictures.
-    answers: Option<Answers>,
-}
-
-impl Comparing {
-    /// Returns the next job for another instance.
-    pub(crate) fn take_job(&mut self) -> Option<Vec<u8>> {
-        self.job.take().map(|job| job.written())
-    }
-
-    /// Returns whether another instance draws a comparison.
-    pub(crate) const fn is_elsewhere(&self) -> bool {
-        self.answers.is_some()
-    }
-
-    /// Takes the end of the job of another instance.
-    pub(crate) fn end_elsewhere(&mut self, end: &[u8]) {
-        if let Some(answers) = self.answers.take() {
-            answers.end(end);
-        }
-    }
-
-    /// Ends the job as cancelled.
-    fn cancel(&mut self) {
-        self.job = None;
-        if let Some(answers) = self.answers.take() {
-            answers.cancel();
-        }
-    }
-}
 
 impl App {
     /// Shows finished pictures, and starts new ones if the comparison is out of date.
@@ -88,10 +50,7 @@ impl App {
             && let Some(job) = Job::compare(&of)
         {
             let (task, sender) = Task::promised(label);
-            self.comparing = Comparing {
-                job: Some(job),
-                answers: Some(Answers::Compared(sender, Box::new(theirs))),
-            };
+            self.comparing = Elsewhere::new(job, Answers::Compared(sender, Box::new(theirs)));
             comparison.drawing = Some(Drawing { of, task });
             return;
         }
@@ -103,11 +62,9 @@ impl App {
 
     /// Returns the inputs of the comparison; `None` if there is no comparison.
     fn compared_now(&self) -> Option<Compared> {
-        let State { scene, view, settings, lab, .. } = &self.state;
+        let lab = &self.state.lab;
         let size = self.viewport.size().filter(|_| lab.compare != Compare::Off)?;
-        let against = lab.reference;
-        let (scene, view) = (scene.clone(), view.clone());
-        Some(Compared { scene, view, settings: *settings, size, against })
+        Some(Compared { shot: self.state.shot(size), against: lab.reference })
     }
 
     /// Shows a finished pair, unless it belongs to another scene.
@@ -116,7 +73,7 @@ impl App {
         match drawing.task.outcome() {
             Outcome::Running => return,
             Outcome::Done(Some(drawn)) => {
-                let settings = drawn.of.settings;
+                let settings = drawn.of.shot.settings;
                 let judged = Judged { error: drawn.error, settings };
                 let is_now = wanted.is_some_and(|wanted| at_one_time(wanted, &drawn.of));
                 self.state.lab.judged = is_now.then_some(judged);
@@ -134,11 +91,7 @@ impl App {
 
 /// Returns whether both have the same inputs, except for the time.
 fn at_one_time(a: &Compared, b: &Compared) -> bool {
-    let view = View { time: a.view.time, ..b.view.clone() };
-    let Compared { scene, view: _, settings, size, against } = b;
-    a.scene == *scene
-        && a.view == view
-        && a.settings == *settings
-        && a.size == *size
-        && a.against == *against
+    let mut b = b.clone();
+    b.shot.view.time = a.shot.view.time;
+    *a == b
 }

@@ -18,7 +18,6 @@ impl App {
         self.state.dial.current = state.dial.last.as_ref().is_some_and(|last| is_of(last));
     }
 
-    /// Shows or hides the loupe.
     pub(super) fn toggle_loupe(&mut self, ctx: &Context) {
         self.state.loupe ^= true;
         let (now, is_held) = ctx.input(|input| (input.time, input.key_down(Key::K)));

@@ -5,9 +5,9 @@ use std::sync::Arc;
 use egui::Context;
 
 use super::App;
-use crate::app::state::{ExplainedPixel, State};
+use crate::app::state::ExplainedPixel;
 use crate::app::tasks::{Outcome, Task};
-use marraztu_core::accuracy::{Samples, Settings, Shot};
+use marraztu_core::accuracy::{Samples, Settings};
 use marraztu_core::base::image::Size;
 use marraztu_render::{PixelColor, Renderer, plan_frame};
 
@@ -23,15 +23,12 @@ impl App {
     pub(crate) fn explain_pixel(&mut self, ctx: &Context, at: [usize; 2]) {
         self.state.explaining = false;
         let Some(size) = self.viewport.size() else { return };
-        let State { scene, view, settings, .. } = &self.state;
-        let (scene, view, settings) = (scene.clone(), view.clone(), *settings);
-        let of = ExplainedPixel { at, scene, view, settings, size, explained: None };
-        let (scene, view) = (of.scene.clone(), of.view.clone());
+        let of = ExplainedPixel { at, shot: self.state.shot(size), explained: None };
         // One sample at the centre, since several samples would mix several surfaces.
-        let settings = Settings { samples: Samples::One, ..settings };
+        let shot = of.shot.with(Settings { samples: Samples::One, ..of.shot.settings });
         let task = Task::start(ctx, "explain a pixel".to_owned(), move |_| {
             let mut renderer = Renderer::default();
-            renderer.render(&plan_frame(&Shot::new(&scene, &view, &settings, size)));
+            renderer.render(&plan_frame(&shot));
             renderer.explain(at[0], at[1])
         });
         match task {
@@ -61,7 +58,7 @@ impl App {
         let size = self.viewport.size().unwrap_or(Size::new(0, 0));
         let [x, y] = last.at;
         let inside = x < size.width && y < size.height;
-        if inside && !last.is_of(&self.state, size) && !self.state.is_animated() {
+        if inside && last.shot != self.state.shot(size) && !self.state.is_animated() {
             self.explain_pixel(ctx, last.at);
         }
     }

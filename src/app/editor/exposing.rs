@@ -1,7 +1,6 @@
 //! Fits the exposure to the picture.
 
 use super::App;
-use marraztu_core::accuracy::Shot;
 use marraztu_core::base::image::Size;
 use marraztu_core::scene::View;
 use marraztu_render::fitted_exposure;
@@ -16,10 +15,8 @@ impl App {
         let Some(Size { width, height }) = self.viewport.size() else { return };
         let longest = width.max(height).max(1);
         let side = |side: usize| (side * SIDE / longest).max(1);
-        let state = &self.state;
         let size = Size::new(side(width), side(height));
-        let exposure =
-            fitted_exposure(&Shot::new(&state.scene, &state.view, &state.settings, size));
+        let exposure = fitted_exposure(&self.state.shot(size));
         self.state.tell(Some(format!("Exposure {exposure} stops")));
         self.show_view(View { exposure, ..self.state.view.clone() });
     }

@@ -11,6 +11,7 @@ use super::App;
 use super::turning::usual_up;
 use super::unseen::out_of_sight;
 use crate::app::documents::answer::Answer;
+use crate::app::documents::dialogs::Dialog;
 use crate::app::documents::loading::{Fetched, FetchedModel, Loading, Queued, Wish, is_scene};
 use crate::app::documents::material_dialog::{
     MaterialChoices, MaterialDialog, details, opened, own_or_silver, summary,
@@ -21,7 +22,7 @@ use crate::app::state::dial::DialState;
 use crate::app::state::{Notice, Offer, Reduction, State};
 use crate::app::tasks::{Outcome, Task};
 use crate::app::widgets::text::file_name;
-use marraztu_core::accuracy::{AccuracyPreset, Settings, Shot};
+use marraztu_core::accuracy::{AccuracyPreset, Settings};
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::edit::{Gesture, items};
@@ -64,50 +65,25 @@ impl App {
     }
 
     fn take_files(&mut self, ctx: &Context, wanted: Wanted, paths: Vec<PathBuf>) {
-        let mut paths = paths.into_iter();
-        match wanted {
-            Wanted::Model => self.load_files(ctx, paths.collect()),
-            Wanted::Dropped => self.open_files(ctx, paths.collect()),
-            Wanted::Texture(id) => {
-                if let Some(path) = paths.next() {
-                    self.load_texture(ctx, id, path);
+        let first = paths.first().cloned();
+        match (wanted, first) {
+            (Wanted::Model, _) => self.load_files(ctx, paths),
+            (Wanted::Dropped, _) => self.open_files(ctx, paths),
+            (_, None) => {}
+            (Wanted::Texture(id), Some(path)) => self.load_texture(ctx, id, path),
+            (Wanted::TextureOfModel, Some(path)) => {
+                if let Some(dialog) = self.dialogs.material() {
+                    dialog.set_texture(path);
                 }
             }
-            Wanted::TextureOfModel => {
-                if let Some(path) = paths.next() {
-                    self.dialogs.set_texture(path);
-                }
+            (Wanted::PictureTo, Some(path)) => self.save_picture(ctx, path),
+            (Wanted::PictureWithOptionsTo | Wanted::TurntableTo, Some(path)) => {
+                self.make_picture(ctx, path);
             }
-            Wanted::PictureTo => {
-                if let Some(path) = paths.next() {
-                    self.save_picture(ctx, path);
-                }
-            }
-            Wanted::PictureWithOptionsTo | Wanted::TurntableTo => {
-                if let Some(path) = paths.next() {
-                    self.make_picture(ctx, path);
-                }
-            }
-            Wanted::ExportTo => {
-                if let Some(path) = paths.next() {
-                    self.export_scene(ctx, path);
-                }
-            }
-            Wanted::Scene => {
-                if let Some(path) = paths.next() {
-                    self.open_scene(ctx, path);
-                }
-            }
-            Wanted::SceneTo(after) => {
-                if let Some(path) = paths.next() {
-                    self.save_to(ctx, path, after);
-                }
-            }
-            Wanted::Missing(old) => {
-                if let Some(path) = paths.next() {
-                    self.found_missing(ctx, old, path);
-                }
-            }
+            (Wanted::ExportTo, Some(path)) => self.export_scene(ctx, path),
+            (Wanted::Scene, Some(path)) => self.open_scene(ctx, path),
+            (Wanted::SceneTo(after), Some(path)) => self.save_to(ctx, path, after),
+            (Wanted::Missing(old), Some(path)) => self.found_missing(ctx, old, path),
         }
     }
 
@@ -119,7 +95,7 @@ impl App {
         let Some((path, loaded)) = dialog.loaded else {
             let model = io::cam_model();
             let command = items::insert_camera(&self.state.scene, model, material);
-            self.add(command, Subject::Camera, "Add a camera");
+            self.add_all(command, Subject::Camera, "Add a camera");
             return;
         };
         if loaded.model.options == options && texture.is_none() {
@@ -193,7 +169,7 @@ impl App {
         // Files are handled in the order of the requests, whatever order they finish in.
         while let Some(loading) = self.loading.first() {
             // Only one material dialog is open at a time, so further models wait.
-            if loading.asks && self.dialogs.asks_material() {
+            if loading.asks && self.dialogs.material().is_some() {
                 return;
             }
             let fetched = match loading.task.outcome() {
@@ -230,17 +206,14 @@ impl App {
                         }
                     }
                     (Ok((loaded, _)), None) => {
-                        self.dialogs.ask_material(MaterialDialog::of_model(path, loaded));
+                        let dialog = MaterialDialog::of_model(path, loaded);
+                        self.dialogs.show(Dialog::Material(Box::new(dialog)));
                     }
                 }
             }
             Fetched::Texture(_, Err(error)) => self.tell_load_error(&error),
             Fetched::Texture(id, Ok((texture, findings))) => {
-                let notice = |finding: Finding| Notice {
-                    text: finding.to_string(),
-                    details: Vec::new(),
-                    offer: None,
-                };
+                let notice = |finding: Finding| Notice::new(finding.to_string());
                 self.state.notices.extend(findings.into_iter().map(notice));
                 let set = |object: &mut Object| object.texture = Some(texture);
                 match items::change_object(&self.state.scene, id, set) {
@@ -261,7 +234,8 @@ impl App {
         match error {
             LoadError::Cancelled => self.state.tell(Some("Loading was cancelled".to_owned())),
             LoadError::File { .. } | LoadError::Line { .. } => {
-                self.dialogs.tell_not_loaded(format!("{error}."));
+                let title = "The file was not loaded";
+                self.dialogs.show(Dialog::Fault(title, format!("{error}.")));
             }
         }
     }
@@ -340,7 +314,6 @@ impl App {
     }
 
     /// Returns the picture that the viewport shows.
-    #[must_use]
     pub fn shown_picture(&self) -> Option<Picture> {
         self.viewport.image().and_then(|image| images::picture(image))
     }
@@ -353,14 +326,12 @@ impl App {
 
     /// Returns the picture of the viewport at full quality.
     fn picture(&self) -> Option<Picture> {
-        let State { scene, view, settings, .. } = &self.state;
         if self.shows_all() {
             return self.shown_picture();
         }
-        let samples = self.state.refined_to().unwrap_or(settings.samples);
-        let settings = Settings { samples, ..*settings };
-        let plan = plan_frame(&Shot::new(scene, view, &settings, self.viewport.size()?));
-        Some(Renderer::default().render(&plan).clone())
+        let mut shot = self.state.shot(self.viewport.size()?);
+        shot.settings.samples = self.state.refined_to().unwrap_or(shot.settings.samples);
+        Some(Renderer::default().render(&plan_frame(&shot)).clone())
     }
 
     /// Continues with the user's request after the scene was saved or discarded.
@@ -385,53 +356,29 @@ impl App {
         }
     }
 
-    /// Replaces the edited scene; the open panels stay.
-    pub(crate) fn replace(&mut self, state: State) {
-        self.swap(state);
-    }
-
-    /// Replaces the scene as [`Self::replace`] does; returns the old state.
-    pub(crate) fn swap(&mut self, state: State) -> State {
-        // Preferences of the window and lists of files belong to the window, not to the scene.
-        let State { panels, theme, drawing, layout, overlays, greeting, .. } = self.state;
-        let State { gizmo, helpers, watches, up, zoom, narrow, picture_only, .. } = self.state;
-        // The palette closes itself after the request that replaces the scene.
-        let palette = self.state.palette;
-        let statistics = self.state.statistics.clone();
-        let dial =
-            DialState { shown: self.state.dial.shown, own: state.dial.own, ..DialState::default() };
-        let recent = std::mem::take(&mut self.state.recent);
-        let recoverable = std::mem::take(&mut self.state.recoverable);
-        let discarded = std::mem::take(&mut self.state.discarded);
-        let generation = self.state.generation + 1;
+    /// Replaces the edited scene; the open panels stay. Returns the old state.
+    pub(crate) fn replace(&mut self, state: State) -> State {
         // Background work for the old scene is of no use for the new one.
         self.end_measuring();
         self.comparison.forget();
         self.first_steps = None;
-        let new = State {
-            panels,
-            theme,
-            drawing,
-            layout,
-            overlays,
-            palette,
-            dial,
-            gizmo,
-            helpers,
-            watches,
-            up,
-            zoom,
-            narrow,
-            picture_only,
-            greeting,
-            statistics,
-            recent,
-            recoverable,
-            discarded,
-            generation,
-            ..state
-        };
-        std::mem::replace(&mut self.state, new)
+        let mut old = std::mem::replace(&mut self.state, state);
+        // Preferences of the window and lists of files belong to the window, not to the scene. The
+        // palette closes itself after the request that replaces the scene.
+        let new = &mut self.state;
+        (new.panels, new.theme, new.drawing, new.layout) =
+            (old.panels, old.theme, old.drawing, old.layout);
+        (new.overlays, new.palette, new.gizmo, new.helpers) =
+            (old.overlays, old.palette, old.gizmo, old.helpers);
+        (new.watches, new.up, new.zoom, new.narrow) = (old.watches, old.up, old.zoom, old.narrow);
+        (new.picture_only, new.greeting) = (old.picture_only, old.greeting);
+        new.dial = DialState { shown: old.dial.shown, own: new.dial.own, ..DialState::default() };
+        new.statistics = old.statistics.clone();
+        new.recent = std::mem::take(&mut old.recent);
+        new.recoverable = std::mem::take(&mut old.recoverable);
+        new.discarded = std::mem::take(&mut old.discarded);
+        new.generation = old.generation + 1;
+        old
     }
 }
 

@@ -14,7 +14,7 @@ use super::turning::usual_up;
 use crate::app::documents::loading::{Arrival, Arrived, Fetched, Wish, is_scene};
 use crate::app::documents::material_dialog::{details, opened, own_or_silver};
 use crate::app::state::{Notice, Offer, State};
-use crate::app::widgets::text::file_name;
+use crate::app::widgets::text::{file_name, one_or_count};
 use marraztu_core::base::Shared;
 use marraztu_core::edit::{Gesture, Refusal, framing, items, lighting, presenting};
 use marraztu_core::scene::{
@@ -75,10 +75,8 @@ impl App {
 
     /// Reads these models together, to show them together.
     fn load_alone(&mut self, ctx: &Context, paths: Vec<PathBuf>, arrival: Arrival) {
-        let label = match &paths[..] {
-            [one] => format!("Loading {}", file_name(one)),
-            more => format!("Loading {} models", more.len()),
-        };
+        let what = one_or_count(&paths, "models", |path| file_name(path));
+        let label = format!("Loading {what}");
         let usual = self.state.up;
         self.begin_loading(ctx, label, false, move |progress| {
             Fetched::Alone(read_all(&paths, usual, progress), arrival)
@@ -110,12 +108,8 @@ impl App {
             return;
         }
         let objects: Vec<Object> = arrived.iter().map(|model| model.object.clone()).collect();
-        let label = match &objects[..] {
-            [one] => format!("Load {}", one.name),
-            more => format!("Load {} models", more.len()),
-        };
-        let shown = self.show_alone(objects, arrival, &label);
-        if let Err(refusal) = shown {
+        let what = one_or_count(&objects, "models", |object| object.name.clone());
+        if let Err(refusal) = self.show_alone(objects, arrival, &format!("Load {what}")) {
             return self.refuse(refusal.to_string());
         }
         // With many models, one notice for each would hide the models.

@@ -91,12 +91,13 @@ impl Job {
 
     /// Describes a comparison; `None` if its scene cannot be sent.
     pub(super) fn compare(of: &Compared) -> Option<Self> {
-        let scene = scene_to_message((&of.scene, &of.view, &of.settings), None).ok()?;
+        let Shot { scene, view, settings, size } = &of.shot;
+        let scene = scene_to_message((scene, view, settings), None).ok()?;
         let axis = match of.against {
             Reference::Ideal => None,
             Reference::Alone(axis) => Some(axis.key.to_owned()),
         };
-        Some(Self::Compare { scene, size: of.size, axis })
+        Some(Self::Compare { scene, size: *size, axis })
     }
 
     /// Writes the message to the other instance.
@@ -138,16 +139,13 @@ pub fn do_job(job: &[u8], tell: Arc<dyn Fn(String) + Send + Sync>) -> Vec<u8> {
             let against = axis.as_deref().and_then(Axis::named);
             let against = against.map_or(Reference::Ideal, Reference::Alone);
             let of = opened(&scene).map(|(scene, view, settings)| Compared {
-                scene,
-                view,
-                settings,
-                size,
+                shot: Shot { scene, view, settings, size },
                 against,
             });
             let pair = of.and_then(|of| draw(of, &Progress::new()));
             return pair.map_or_else(Vec::new, |Pair { of, exact, ours, error }| {
                 let pictures = [&exact, &ours].map(|picture| picture.pixels().as_flattened());
-                write(&End::Compared(of.size, error), &pictures)
+                write(&End::Compared(of.shot.size, error), &pictures)
             });
         }
         Err(_) => None,
@@ -177,7 +175,7 @@ fn prepared(
     let (scene, view, current) = scene_of_message(scene, None, &Known::default()).ok()?;
     let axes = axes.iter().filter_map(|key| Axis::named(key)).collect();
     let thoroughness = Thoroughness::named(thoroughness)?;
-    let studio = Studio::new(Shot::new(&scene, &view, &current, size));
+    let studio = Studio::new(Shot { scene, view, settings: current, size });
     Some((studio, Question { current, axes, thoroughness }))
 }
 
@@ -188,6 +186,49 @@ pub(super) enum Answers {
     Suite(Sender<Result<Vec<Report>, Unmeasured>>),
     Made(Sender<Made>),
     Compared(Sender<Option<Box<Pair>>>, Box<Compared>),
+}
+
+/// A job that another instance does.
+#[derive(Debug, Default)]
+pub(crate) struct Elsewhere {
+    /// The job, until it is taken.
+    job: Option<Job>,
+    /// Receives the result.
+    answers: Option<Answers>,
+}
+
+impl Elsewhere {
+    pub(super) const fn new(job: Job, answers: Answers) -> Self {
+        Self { job: Some(job), answers: Some(answers) }
+    }
+
+    /// Returns the job, if it was not taken yet.
+    pub(crate) fn take_job(&mut self) -> Option<Vec<u8>> {
+        self.job.take().map(|job| job.written())
+    }
+
+    /// Returns whether another instance does the job now.
+    pub(super) const fn is_taken(&self) -> bool {
+        self.job.is_none() && self.answers.is_some()
+    }
+
+    pub(crate) const fn is_awaited(&self) -> bool {
+        self.answers.is_some()
+    }
+
+    pub(crate) fn end(&mut self, end: &[u8]) {
+        if let Some(answers) = self.answers.take() {
+            answers.end(end);
+        }
+    }
+
+    /// Ends the job as cancelled.
+    pub(super) fn cancel(&mut self) {
+        self.job = None;
+        if let Some(answers) = self.answers.take() {
+            answers.cancel();
+        }
+    }
 }
 
 /// Reads the progress of a job: the finished fraction, and the findings up to now.
@@ -296,8 +337,7 @@ mod tests {
         let (scene, view) = marraztu_io::default_scene();
         let (settings, size) = (Settings::default(), Size::new(40, 30));
         for against in [Reference::Ideal, Reference::Alone(Axis::named("depth").unwrap())] {
-            let (scene, view) = (scene.clone(), view.clone());
-            let of = Compared { scene, view, settings, size, against };
+            let of = Compared { shot: Shot::new(&scene, &view, &settings, size), against };
             let (sender, receiver) = std::sync::mpsc::channel();
             let job = Job::compare(&of).unwrap().written();
             Answers::Compared(sender, Box::new(of.clone())).end(&do_job(&job, Arc::new(|_| {})));

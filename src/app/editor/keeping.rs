@@ -10,7 +10,6 @@ use std::time::{Duration, SystemTime};
 use egui::Context;
 
 use super::App;
-use crate::app::documents::loading::{Fetched, Opening};
 use crate::app::panels::preferences;
 use crate::app::state::{Notice, State};
 use crate::app::widgets::text::file_name;
@@ -53,7 +52,7 @@ impl App {
         said: Option<String>,
     ) {
         let changed_keys = self.use_preferences(ctx, &preferences);
-        self.state.notices.extend(said.map(notice));
+        self.state.notices.extend(said.map(Notice::new));
         if !changed_keys.is_empty() {
             let text = "Some of your custom keys could not be restored.".to_owned();
             self.state.notices.push(Notice { text, details: changed_keys, offer: None });
@@ -67,22 +66,19 @@ impl App {
             Ok(journal) => Some(journal),
             Err(why) => {
                 let text = format!("Unsaved work cannot be kept for recovery: {why}.");
-                self.state.notices.push(notice(text));
+                self.state.notices.push(Notice::new(text));
                 None
             }
         };
-        let discarded = Vec::new();
-        let (kept, changed) = (None, None);
-        let known = preferences.recent.clone();
         self.keeping = Some(Keeping {
             folders,
             journal,
-            kept,
+            kept: None,
             offered,
-            discarded,
+            discarded: Vec::new(),
+            known: preferences.recent.clone(),
             preferences,
-            known,
-            changed,
+            changed: None,
         });
         self.list_discarded();
     }
@@ -107,7 +103,7 @@ impl App {
             }
             if let Some(fault) = journal.fault() {
                 state.notices.retain(|notice| !notice.text.starts_with(NOT_KEPT));
-                state.notices.push(notice(format!("{NOT_KEPT}{fault}.")));
+                state.notices.push(Notice::new(format!("{NOT_KEPT}{fault}.")));
             }
         }
         let Some(keeping) = &mut self.keeping else { return };
@@ -162,27 +158,18 @@ impl App {
 
     /// Reads the offered work at this index, to show it in place of the scene.
     pub(crate) fn recover(&mut self, ctx: &Context, at: usize) {
-        let Some(work) = self.keeping.as_ref().and_then(|keeping| keeping.offered.get(at)) else {
-            return;
-        };
-        let path = work.path().to_owned();
-        self.read_work(ctx, path);
+        let work = self.keeping.as_ref().and_then(|keeping| keeping.offered.get(at));
+        if let Some(path) = work.map(|work| work.path().to_owned()) {
+            self.read_scene(ctx, RECOVERING.to_owned(), path);
+        }
     }
 
     /// Reads the discarded work at this index, to show it in place of the scene.
     pub(crate) fn recover_discarded(&mut self, ctx: &Context, at: usize) {
         let work = self.keeping.as_ref().and_then(|keeping| keeping.discarded.get(at));
         if let Some(path) = work.map(|work| work.path().to_owned()) {
-            self.read_work(ctx, path);
+            self.read_scene(ctx, RECOVERING.to_owned(), path);
         }
-    }
-
-    fn read_work(&mut self, ctx: &Context, path: PathBuf) {
-        self.note_opening(&path);
-        self.begin_loading(ctx, "Recovering unsaved work".to_owned(), false, move |progress| {
-            let result = io::open(&path, progress);
-            Fetched::Scene(Box::new(Opening { path, result }))
-        });
     }
 
     /// Moves the offered work at this index to the discarded work.
@@ -228,12 +215,11 @@ impl App {
         let discarded = keeping.discarded.iter().find(|work| work.path() == opened).cloned();
         if let Some(work) = offered.and_then(|at| self.take_offered(at)) {
             self.name_recovered(opened, work.scene_file.clone(), work.content);
-            if let Some(keeping) = &mut self.keeping {
-                match &keeping.journal {
-                    Some(journal) => journal.replace(work),
-                    // Without a journal, the next program offers it again.
-                    None => drop(work),
-                }
+            // Without a journal, the next program offers it again.
+            if let Some(journal) =
+                self.keeping.as_ref().and_then(|keeping| keeping.journal.as_ref())
+            {
+                journal.replace(work);
             }
             return true;
         }
@@ -295,11 +281,9 @@ impl Keeping {
     }
 }
 
-const NOT_KEPT: &str = "Unsaved changes could not be kept for recovery: ";
+const RECOVERING: &str = "Recovering unsaved work";
 
-fn notice(text: String) -> Notice {
-    Notice { text, details: Vec::new(), offer: None }
-}
+const NOT_KEPT: &str = "Unsaved changes could not be kept for recovery: ";
 
 /// Names a scene: "harbour.marraztu", or "a new scene".
 fn scene_name(file: Option<&Path>) -> String {

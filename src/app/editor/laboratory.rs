@@ -11,12 +11,11 @@ use std::time::{Duration, Instant};
 use egui::Context;
 
 use super::App;
-use super::jobs::{Answers, Job, so_far};
+use super::jobs::{Answers, Elsewhere, Job, so_far};
 use crate::app::actions::LabRequest;
 use crate::app::state::State;
 use crate::app::state::laboratory::Compare;
 use crate::app::tasks::{Outcome, Task};
-use marraztu_core::accuracy::Shot;
 use marraztu_core::accuracy::{AXES, Axis};
 use marraztu_core::base::image::Size;
 use marraztu_core::edit::selection;
@@ -48,10 +47,8 @@ pub(crate) struct Work {
     command: String,
     /// When the window was last drawn.
     drawn_at: Option<Instant>,
-    /// The next message to another instance that measures.
-    job: Option<Job>,
-    /// Receives what that instance measures.
-    answers: Option<Answers>,
+    /// The measurement by another instance.
+    pub(crate) elsewhere: Elsewhere,
 }
 
 /// The attributed error of a pixel, and the item at that pixel; `None` for the background.
@@ -84,8 +81,22 @@ impl Work {
         (done > 0.0 && spent > 1.0).then(|| spent * (1.0 - fraction) / done)
     }
 
-    const fn is_measuring(&self) -> bool {
-        self.sweep.is_some() || self.suite.is_some()
+    /// Returns the progress of the running measurement.
+    fn progress(&self) -> Option<&io::Progress> {
+        let sweep = self.sweep.as_ref().map(|task| &task.progress);
+        sweep.or_else(|| self.suite.as_ref().map(|task| &task.progress))
+    }
+
+    fn is_measuring(&self) -> bool {
+        self.progress().is_some()
+    }
+
+    /// Cancels the running measurement.
+    fn cancel(&mut self) {
+        self.elsewhere.cancel();
+        if let Some(progress) = self.progress() {
+            progress.cancel();
+        }
     }
 
     /// Returns a guard for drawing the window. Measurements made while it exists are invalid.
@@ -106,7 +117,7 @@ impl Work {
         }
         let is_used = self.pressed_at.is_some_and(|at| at.elapsed() < USED);
         if self.is_measuring()
-            && self.answers.is_none()
+            && !self.elsewhere.is_awaited()
             && !is_used
             && let Some(rest) = self.drawn_at.and_then(|at| REST.checked_sub(at.elapsed()))
         {
@@ -115,40 +126,14 @@ impl Work {
         self.drawn_at = Some(Instant::now());
     }
 
-    /// Returns the next message to another instance that measures.
-    pub(crate) fn take_job(&mut self) -> Option<Vec<u8>> {
-        self.job.take().map(|job| job.written())
-    }
-
-    /// Returns whether another instance measures.
-    pub(crate) const fn measures_elsewhere(&self) -> bool {
-        self.answers.is_some()
-    }
-
     /// Takes what another instance tells.
     pub(crate) fn hear(&self, told: &str) {
         let Some((fraction, findings)) = so_far(told) else { return };
-        let sweep = self.sweep.as_ref().map(|task| &task.progress);
-        if let Some(progress) = sweep.or_else(|| self.suite.as_ref().map(|task| &task.progress)) {
+        if let Some(progress) = self.progress() {
             progress.set(fraction);
         }
         if findings.is_some() {
             *self.so_far.lock().unwrap_or_else(PoisonError::into_inner) = findings;
-        }
-    }
-
-    /// Takes the end of the measurement of another instance.
-    pub(crate) fn end_elsewhere(&mut self, end: &[u8]) {
-        if let Some(answers) = self.answers.take() {
-            answers.end(end);
-        }
-    }
-
-    /// Ends the measurement of another instance as cancelled.
-    fn cancel_elsewhere(&mut self) {
-        self.job = None;
-        if let Some(answers) = self.answers.take() {
-            answers.cancel();
         }
     }
 }
@@ -175,7 +160,6 @@ fn command(state: &State, size: Size, thoroughness: &Thoroughness) -> String {
 }
 
 impl App {
-    /// Answers a request to the laboratory.
     pub(crate) fn answer_lab(&mut self, ctx: &Context, ask: LabRequest) {
         let lab = &mut self.state.lab;
         match ask {
@@ -186,15 +170,7 @@ impl App {
             }
             LabRequest::Suite(detail) => self.measure_suite(ctx, detail),
             LabRequest::ShowSuite(place) => lab.shown_suite = place,
-            LabRequest::Cancel => {
-                self.lab.cancel_elsewhere();
-                if let Some(task) = &self.lab.sweep {
-                    task.progress.cancel();
-                }
-                if let Some(task) = &self.lab.suite {
-                    task.progress.cancel();
-                }
-            }
+            LabRequest::Cancel => self.lab.cancel(),
             LabRequest::Judge(measure) => {
                 lab.measure = measure;
                 lab.budgets.error = None;
@@ -221,13 +197,12 @@ impl App {
     /// Starts to measure the picture in the viewport.
     fn sweep(&mut self, ctx: &Context, thoroughness: Thoroughness, axes: Vec<&'static Axis>) {
         let Some(size) = self.viewport.size().filter(|_| !self.lab.is_measuring()) else { return };
-        let State { scene, view, settings, .. } = &self.state;
-        let shot = Shot::new(scene, view, settings, size);
+        let shot = self.state.shot(size);
         // The scene is kept to detect later that the results are out of date.
-        let measured = Some((scene.clone(), view.clone(), size));
+        let measured = Some(shot.clone());
         let only = (axes.len() == 1).then(|| axes[0].key);
-        let question = Question { current: *settings, axes, thoroughness };
-        let job = self.draws_elsewhere.then(|| Job::sweep(&shot, &question)).flatten();
+        let question = Question { current: shot.settings, axes, thoroughness };
+        let job = if self.draws_elsewhere { Job::sweep(&shot, &question) } else { None };
         // A cancelled sweep may still report findings, so each sweep has a separate cell.
         self.lab.so_far = Arc::default();
         let (watch, so_far) = (self.lab.watch(), Arc::clone(&self.lab.so_far));
@@ -241,9 +216,9 @@ impl App {
             sweep(&mut studio, &question, &mut WallClock::default(), &watch, &mut tell)
         };
         let label = "Measuring".to_owned();
-        let started = if job.is_some() {
+        let started = if let Some(job) = job {
             let (task, sender) = Task::promised(label);
-            (self.lab.job, self.lab.answers) = (job, Some(Answers::Sweep(sender)));
+            self.lab.elsewhere = Elsewhere::new(job, Answers::Sweep(sender));
             Ok(task)
         } else {
             Task::start(ctx, label, work)
@@ -268,7 +243,6 @@ impl App {
         }
     }
 
-    /// Starts to measure the suite.
     fn measure_suite(&mut self, ctx: &Context, detail: SuiteDetail) {
         if self.lab.is_measuring() {
             return;
@@ -282,7 +256,7 @@ impl App {
         let label = "Measuring the suite".to_owned();
         let started = if self.draws_elsewhere {
             let (task, sender) = Task::promised(label);
-            (self.lab.job, self.lab.answers) = (Some(Job::Suite), Some(Answers::Suite(sender)));
+            self.lab.elsewhere = Elsewhere::new(Job::Suite, Answers::Suite(sender));
             Ok(task)
         } else {
             Task::start(ctx, label, work)
@@ -299,15 +273,12 @@ impl App {
 
     /// Shows the progress of the running measurement.
     fn tell_progress(&mut self) {
-        let suite = self.lab.suite.as_ref().map(|task| task.progress.fraction());
-        let sweep = self.lab.sweep.as_ref().map(|task| task.progress.fraction());
-        if let Some(fraction) = suite.or(sweep) {
+        if let Some(fraction) = self.lab.progress().map(io::Progress::fraction) {
             let left = self.lab.left(fraction);
             (self.state.lab.running, self.state.lab.left) = (Some(fraction), left);
         }
     }
 
-    /// Shows the reports of the suite.
     fn hear_suite(&mut self, ctx: &Context) {
         let Some(task) = &self.lab.suite else { return };
         match task.outcome() {
@@ -332,23 +303,16 @@ impl App {
 
     /// Cancels all measurements of a scene that is gone.
     pub(crate) fn end_measuring(&mut self) {
-        self.lab.cancel_elsewhere();
-        if let Some(task) = self.lab.sweep.take() {
-            task.progress.cancel();
-        }
-        if let Some(task) = self.lab.suite.take() {
-            task.progress.cancel();
-        }
-        self.lab.blame = None;
+        self.lab.cancel();
+        (self.lab.sweep, self.lab.suite, self.lab.blame) = (None, None, None);
     }
 
     /// Attributes the error at a pixel of the current picture.
     fn explain(&mut self, ctx: &Context, at: [usize; 2]) {
         self.state.lab.picking = false;
         let Some(size) = self.viewport.size() else { return };
-        let State { scene, view, settings, .. } = &self.state;
-        let (mut studio, settings) =
-            (Studio::new(Shot::new(scene, view, settings, size)), *settings);
+        let settings = self.state.settings;
+        let mut studio = Studio::new(self.state.shot(size));
         // The renderer draws the picture again to name the item at the pixel.
         let work = move |_: &io::Progress| {
             let blame = attribute(&mut studio, &settings, at)?;
@@ -451,7 +415,7 @@ impl App {
                 state.lab.away = true;
                 state.lab.costs.clone_from(&self.state.lab.costs);
                 // A lesson opened from a lesson keeps the user's scene, not the lesson's.
-                let own = self.swap(state);
+                let own = self.replace(state);
                 if !own.lab.away {
                     self.waiting_scene = Some(Box::new(own));
                 }
@@ -468,7 +432,7 @@ impl App {
         let Some(mut own) = self.waiting_scene.take() else { return };
         own.lab.costs = std::mem::take(&mut self.state.lab.costs);
         own.tell(Some("Back in your scene".to_owned()));
-        self.swap(*own);
+        self.replace(*own);
     }
 }
 

@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use egui::{ColorImage, Context, Rect};
 
 use super::App;
-use super::jobs::{Answers, Job, so_far};
+use super::jobs::{Answers, Elsewhere, Job, so_far};
 use super::orders::{Content, Made, Order};
 use crate::app::documents::picture_dialog::{PictureChoices, Purpose};
 use crate::app::documents::wanted::Wanted;
@@ -27,58 +27,46 @@ pub(crate) struct Making {
     choices: Option<PictureChoices>,
     /// A requested picture of the window.
     screenshot: Option<Screenshot>,
-    /// The jobs for another instance, in order.
-    errands: VecDeque<Errand>,
-    /// Whether another instance does the first one.
-    is_doing: bool,
-}
-
-/// A job for another instance, and the way its result takes.
-#[derive(Debug)]
-struct Errand {
-    job: Job,
-    answers: Answers,
-    progress: Progress,
+    /// The jobs for another instance, in order, with their progress. It does the first one.
+    errands: VecDeque<(Elsewhere, Progress)>,
 }
 
 impl Making {
     /// Returns the next job for another instance, unless one is being done.
     pub(crate) fn take_job(&mut self) -> Option<Vec<u8>> {
-        let next = self.errands.front().filter(|_| !self.is_doing)?;
-        self.is_doing = true;
-        Some(next.job.written())
+        self.errands.front_mut()?.0.take_job()
     }
 
     /// Returns whether another instance makes a file.
-    pub(crate) const fn is_elsewhere(&self) -> bool {
-        self.is_doing
+    pub(crate) fn is_elsewhere(&self) -> bool {
+        self.errands.front().is_some_and(|(job, _)| job.is_taken())
     }
 
     /// Takes what another instance tells.
     pub(crate) fn hear(&self, told: &str) {
-        if let (Some(errand), Some((fraction, _))) = (self.errands.front(), so_far(told)) {
-            errand.progress.set(fraction);
+        if let (Some((_, progress)), Some((fraction, _))) = (self.errands.front(), so_far(told)) {
+            progress.set(fraction);
         }
     }
 
     /// Takes the end of the job of another instance.
     pub(crate) fn end_elsewhere(&mut self, end: &[u8]) {
         // The end of a cancelled job may come late.
-        if std::mem::take(&mut self.is_doing)
-            && let Some(errand) = self.errands.pop_front()
+        if self.is_elsewhere()
+            && let Some((mut job, _)) = self.errands.pop_front()
         {
-            errand.answers.end(end);
+            job.end(end);
         }
     }
 
     /// Ends the jobs that were cancelled.
     fn drop_cancelled(&mut self) {
-        let is_cancelled = |errand: &Errand| errand.progress.is_cancelled();
-        self.is_doing &= !self.errands.front().is_some_and(is_cancelled);
-        let all = std::mem::take(&mut self.errands).into_iter();
-        let (cancelled, rest) = all.partition::<Vec<_>, _>(is_cancelled);
-        self.errands = rest.into();
-        cancelled.into_iter().for_each(|errand| errand.answers.cancel());
+        self.errands.retain_mut(|(job, progress)| {
+            if progress.is_cancelled() {
+                job.cancel();
+            }
+            !progress.is_cancelled()
+        });
     }
 }
 
@@ -138,7 +126,6 @@ impl App {
         self.make(ctx, Order { path, content: Content::Drawn(choices) });
     }
 
-    /// Begins to export the scene.
     pub(crate) fn export_scene(&mut self, ctx: &Context, path: PathBuf) {
         self.make(ctx, Order { path, content: Content::Exported });
     }
@@ -151,7 +138,8 @@ impl App {
             let (task, sender) = Task::promised(order.label());
             let progress = task.progress.clone();
             self.making.tasks.push(task);
-            self.making.errands.push_back(Errand { job, answers: Answers::Made(sender), progress });
+            let job = Elsewhere::new(job, Answers::Made(sender));
+            self.making.errands.push_back((job, progress));
             ctx.request_repaint();
             return;
         }
@@ -256,7 +244,7 @@ mod tests {
         let (task, sender) = Task::promised(order.label());
         let progress = task.progress.clone();
         making.tasks.push(task);
-        making.errands.push_back(Errand { job, answers: Answers::Made(sender), progress });
+        making.errands.push_back((Elsewhere::new(job, Answers::Made(sender)), progress));
     }
 
     #[test]

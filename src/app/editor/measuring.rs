@@ -36,9 +36,7 @@ impl App {
             return measuring.task.progress.cancel();
         }
         let Some(size) = self.viewport.size() else { return };
-        let (scene, view) = (self.state.scene.clone(), self.state.view.clone());
-        let settings = self.state.settings;
-        let of = Shot::new(&scene, &view, &settings, size);
+        let of = self.state.shot(size);
         let theirs = of.clone();
         let task = Task::start(ctx, "measure effects".to_owned(), move |progress| {
             cost::measure(&theirs, BUDGET, || progress.is_cancelled())
@@ -66,9 +64,7 @@ impl App {
         match costs {
             Some(_) if cancelled => {}
             Some(costs) => {
-                let Shot { scene, view, settings, .. } = of;
-                let measured = Measured { costs, scene, view, settings };
-                self.state.plan.costs = Some(Arc::new(measured));
+                self.state.plan.costs = Some(Arc::new(Measured { costs, of }));
             }
             None => self
                 .refuse("the effects could not be measured: this is a bug in the program".into()),

@@ -11,10 +11,11 @@ use egui::Context;
 
 use super::App;
 use crate::app::actions::MissingRequest;
+use crate::app::documents::dialogs::Dialog;
 use crate::app::documents::loading::{Fetched, Found};
 use crate::app::documents::wanted::Wanted;
 use crate::app::state::{MissingFiles, Notice};
-use crate::app::widgets::text::file_name;
+use crate::app::widgets::text::{file_name, one_or_count};
 use marraztu_core::base::Shared;
 use marraztu_core::edit::Gesture;
 use marraztu_core::scene::{Camera, Command, Item, Model, Object, Scene, Texture};
@@ -43,13 +44,13 @@ impl App {
             Some(file) => {
                 let near = self.state.path.as_deref().and_then(Path::parent);
                 let folder = [file.parent(), near].into_iter().flatten().find(|it| it.is_dir());
-                self.dialogs.begin_in(folder.map(Path::to_owned));
+                self.dialogs.folders.open_in(folder.map(Path::to_owned));
                 let name = file_name(&file);
                 self.ask_file(ctx, Wanted::Missing(file), &name);
             }
             None => {
                 let all = missing.into_iter().map(Path::to_owned).collect();
-                self.dialogs.list_missing(all);
+                self.dialogs.show(Dialog::Missing(all));
             }
         }
     }
@@ -60,11 +61,11 @@ impl App {
     }
 
     fn read_found(&mut self, ctx: &Context, pairs: Vec<[PathBuf; 2]>) {
-        let label = match &pairs[..] {
-            [] => return,
-            [[_, new]] => format!("Loading {}", file_name(new)),
-            all => format!("Loading {} files", all.len()),
-        };
+        if pairs.is_empty() {
+            return;
+        }
+        let what = one_or_count(&pairs, "files", |[_, new]| file_name(new));
+        let label = format!("Loading {what}");
         // The thread gets only the placeholders to replace, not the scene.
         let work: Vec<_> = pairs
             .into_iter()
@@ -91,7 +92,7 @@ impl App {
 
     /// Replaces placeholders by the files found, in one step of undo.
     pub(crate) fn take_found(&mut self, all: Vec<Found>) {
-        let mut content = Content::default();
+        let mut content = Replacements::default();
         let (mut pairs, mut details) = (Vec::new(), Vec::new());
         for Found { old, new, models, texture, findings } in all {
             details.extend(findings.iter().map(ToString::to_string));
@@ -117,14 +118,13 @@ impl App {
             }
         }
         // All replacements are one step of undo.
-        let commands = content.commands(&self.state.scene);
-        let label = match &pairs[..] {
-            [[_, new]] => format!("Find {}", file_name(new)),
-            all => format!("Find {} files", all.len()),
-        };
+        let scene = &self.state.scene;
+        let commands: Vec<_> = content.of_objects(scene).chain(content.of_cameras(scene)).collect();
         if commands.is_empty() {
             return;
         }
+        let what = one_or_count(&pairs, "files", |[_, new]| file_name(new));
+        let label = format!("Find {what}");
         self.change(Command::Batch(commands), Gesture::Whole, &label);
         if !details.is_empty() {
             let text = format!("{label}: {} findings", details.len());
@@ -136,28 +136,31 @@ impl App {
     }
 }
 
-/// The replacements of placeholders.
+/// Replacements of models and placeholders.
 #[derive(Default)]
-struct Content {
-    /// The placeholders, and the models that replace them.
-    models: Vec<(Shared<Model>, Shared<Model>)>,
+pub(super) struct Replacements {
+    /// The models, and those that replace them.
+    pub(super) models: Vec<(Shared<Model>, Shared<Model>)>,
     /// The paths of missing textures, and the textures found.
     textures: Vec<(PathBuf, Shared<Texture>)>,
 }
 
-impl Content {
-    /// Creates the commands that replace the placeholders of a scene.
-    fn commands(&self, scene: &Scene) -> Vec<Command> {
-        let objects = scene.objects.iter().filter_map(|(id, object)| {
+impl Replacements {
+    /// Creates the commands that replace the models and the textures of objects.
+    pub(super) fn of_objects(&self, scene: &Scene) -> impl Iterator<Item = Command> {
+        scene.objects.iter().filter_map(|(id, object)| {
             let object = self.object(object)?;
             Some(Command::Replace(Item::Object(id, Box::new(object))))
-        });
-        let cameras = scene.cameras.iter().filter_map(|(id, camera)| {
+        })
+    }
+
+    /// Creates the commands that replace the models of cameras.
+    fn of_cameras(&self, scene: &Scene) -> impl Iterator<Item = Command> {
+        scene.cameras.iter().filter_map(|(id, camera)| {
             let model = self.model(&camera.model)?;
             let camera = Camera { model, ..camera.clone() };
             Some(Command::Replace(Item::Camera(id, Box::new(camera))))
-        });
-        objects.chain(cameras).collect()
+        })
     }
 
     /// Returns an object with the files found; `None` if the object needs none of these files.
@@ -169,7 +172,7 @@ impl Content {
         }
         let mut object = object.clone();
         if let Some(model) = model {
-            // The found model may have fewer parts than the placeholder's object has hidden.
+            // The new model may have fewer parts than the object has hidden.
             let parts = u32::try_from(model.mesh.parts().len()).unwrap_or(u32::MAX);
             object.hidden_parts.retain(|part| *part < parts);
             object.model = model;

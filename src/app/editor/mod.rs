@@ -34,12 +34,14 @@ use std::time::Duration;
 
 use egui::{Context, Event, UiBuilder, ViewportCommand};
 
-use crate::app::actions::{Action, Request};
+use crate::app::actions::Requests;
 use crate::app::documents::dialogs::Dialogs;
+#[cfg(feature = "desktop")]
+use crate::app::documents::dialogs::Parent;
 use crate::app::documents::loading::{Loading, Queued};
 use crate::app::documents::wanted::After;
 use crate::app::drawing::motion::{Happening, Motion};
-use crate::app::drawing::snapshot::Snapshot;
+use crate::app::drawing::snapshot::{DrawOptions, Snapshot};
 use crate::app::drawing::worker::Worker;
 use crate::app::fonts;
 use crate::app::input::keyboard::{Keyboard, Press};
@@ -51,8 +53,8 @@ use crate::app::viewport::comparison::Comparison;
 use crate::app::viewport::{Purpose, Viewport};
 use crate::app::widgets::number::take_bad_text;
 use crate::app::widgets::tooltips;
-use comparing::Comparing;
 use explaining::Explaining;
+use jobs::Elsewhere;
 use keeping::Keeping;
 use laboratory::Work;
 use making::Making;
@@ -76,7 +78,7 @@ pub struct App {
     /// Files being made.
     pub(crate) making: Making,
     /// The comparison by another instance.
-    pub(crate) comparing: Comparing,
+    pub(crate) comparing: Elsewhere,
     /// Files waiting to be read.
     pub(crate) queued: VecDeque<Queued>,
     /// The scenes that are read after this frame, for a host that has to provide their files.
@@ -121,7 +123,6 @@ pub struct App {
 
 impl App {
     /// Creates an editor of this scene.
-    #[must_use]
     pub fn new(scene: Scene, view: View) -> Self {
         Self {
             state: State::new(scene, view),
@@ -129,7 +130,7 @@ impl App {
             loading: Vec::new(),
             searches: Vec::new(),
             making: Making::default(),
-            comparing: Comparing::default(),
+            comparing: Elsewhere::default(),
             queued: VecDeque::new(),
             opening: Vec::new(),
             models_from: None,
@@ -182,7 +183,6 @@ impl App {
     }
 
     /// Returns the scene being edited, and everything shown about it.
-    #[must_use]
     pub const fn state(&self) -> &State {
         &self.state
     }
@@ -239,7 +239,7 @@ impl App {
         }
         // The dialogs come last, over everything else.
         let answer = self.dialogs.ui(&ctx);
-        let pressed = Action::pressed(&ctx);
+        let pressed = Keyboard::take(&ctx);
 
         // Requests are answered last, so everything in a frame shows the same scene.
         if !requests.is_empty() || !pressed.is_empty() || answer.is_some() {
@@ -249,7 +249,7 @@ impl App {
             self.refuse(format!("\"{text}\" is not valid here: the field keeps its value"));
         }
         if let Some(text) = fonts::take_missing(&ctx) {
-            self.state.notices.push(Notice { text, details: Vec::new(), offer: None });
+            self.state.notices.push(Notice::new(text));
         }
         if Keyboard::take_held_escape(&ctx)
             && !Panel::MOMENTARY.into_iter().any(|panel| self.closes(panel))
@@ -306,7 +306,7 @@ impl App {
     }
 
     /// Prepares a frame: takes the worker's results, advances the clock, reads the screen.
-    fn begin(&mut self, ctx: &Context, requests: &mut Vec<Request>) {
+    fn begin(&mut self, ctx: &Context, requests: &mut Requests) {
         if self.worker.is_none() {
             Keyboard::install(ctx);
             tooltips::install(ctx);
@@ -379,26 +379,17 @@ impl App {
     /// Requests the picture of the current scene, at reduced quality while it moves.
     fn draw(&mut self, ctx: &Context) {
         let (Some(worker), Some(size)) = (&mut self.worker, self.viewport.size()) else { return };
-        let State { scene, view, settings, .. } = &self.state;
-        let (scene, view, settings) = (scene.clone(), view.clone(), *settings);
-        let explain = self.state.panels.has(Panel::Plan);
-        let outlined = self.state.outlined();
         let coarse = self.state.coarse_while_moving;
-        let budget = Duration::from_millis(self.state.drawing.budget_ms.into());
-        let refined = self.state.refined_to();
-        let mut wanted = Snapshot {
-            scene,
-            view,
-            settings,
-            size,
+        let options = DrawOptions {
             moving: false,
             coarse,
-            budget,
-            refined,
+            budget: Duration::from_millis(self.state.drawing.budget_ms.into()),
+            refined: self.state.refined_to(),
             dial: self.state.wanted_dial(),
-            explain,
-            outlined,
+            explain: self.state.panels.has(Panel::Plan),
+            outlined: self.state.outlined(),
         };
+        let mut wanted = Snapshot { shot: self.state.shot(size), options };
         // Input interrupts the refinement, even if the picture does not change.
         let (now, held) = ctx.input(|input| (input.time, input.pointer.any_down()));
         if held || ctx.input(|input| !input.events.is_empty()) {
@@ -409,7 +400,7 @@ impl App {
         let drawing = worker.is_drawing() && !self.state.is_animated();
         let happening = Happening { changed, held, drawing };
         let moving = self.motion.notice(now, happening);
-        wanted.moving = moving && coarse;
+        wanted.options.moving = moving && coarse;
         if let Some(rest) = self.motion.rest(now) {
             ctx.request_repaint_after(Duration::from_secs_f64(rest));
         }
@@ -486,7 +477,15 @@ impl App {
         }
     }
 
-    /// Ends after the window was asked to close and the editor did not object.
+    /// Shows a frame in a window that is the parent of system dialogs.
+    #[cfg(feature = "desktop")]
+    pub(crate) fn frame_within(&mut self, ui: &mut egui::Ui, parent: &dyn Parent) {
+        self.frame(ui);
+        self.dialogs.open_system(ui.ctx(), parent);
+    }
+
+    /// Ends after the window was asked to close and the editor did not object. Not called if the
+    /// window is lost with its display or by a fault.
     #[cfg(feature = "desktop")]
     pub(crate) fn end(&mut self) {
         self.end_keeping();

@@ -1,6 +1,6 @@
 //! Orders for files that take time to make: pictures with options, turntables, exports.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
@@ -20,7 +20,6 @@ pub(super) struct Order {
     pub(super) content: Content,
 }
 
-/// The content of a file.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) enum Content {
     /// A picture, or a turntable.
@@ -39,6 +38,9 @@ pub(crate) enum Made {
     Failed(String),
 }
 
+/// The notes about a file, `None` if it was cancelled, or why it failed.
+type Notes = Result<Option<Vec<String>>, String>;
+
 impl Order {
     /// Describes the work: "Drawing cow.png".
     pub(super) fn label(&self) -> String {
@@ -56,82 +58,69 @@ impl Order {
         sources: &Sources,
         progress: &Progress,
     ) -> Made {
-        let path = &self.path;
-        let choices = match self.content {
-            Content::Drawn(choices) => choices,
-            Content::Exported => {
-                return match io::export(path, &scene, &view, sources) {
-                    Ok(exported) => Made::Done(path.clone(), exported.notes),
-                    Err(error) => Made::Failed(error.to_string()),
-                };
+        let made = match self.content {
+            Content::Drawn(choices) => {
+                let settings = Settings { samples: choices.samples, ..settings };
+                let shot = Shot { scene, view, settings, size: choices.whole() };
+                match choices.purpose {
+                    Purpose::Picture => self.picture(&shot, choices.transparent, progress),
+                    Purpose::Turntable => self.turntable(&shot, &choices, sources, progress),
+                }
             }
+            Content::Exported => io::export(&self.path, &scene, &view, sources)
+                .map(|exported| Some(exported.notes))
+                .map_err(|error| error.to_string()),
         };
-        let settings = Settings { samples: choices.samples, ..settings };
-        let shot = Shot::new(&scene, &view, &settings, choices.whole());
-        match choices.purpose {
-            Purpose::Picture => picture(path, &shot, choices.transparent, progress),
-            Purpose::Turntable => turntable(path, &shot, &choices, sources, progress),
+        match made {
+            Ok(Some(notes)) => Made::Done(self.path.clone(), notes),
+            Ok(None) => Made::Cancelled,
+            Err(why) => Made::Failed(why),
         }
     }
-}
 
-/// Draws a picture into a file.
-fn picture(path: &Path, shot: &Shot, transparent: bool, progress: &Progress) -> Made {
-    let save = |size, next: &mut io::NextBand<'_>| io::save_bands(path, size, transparent, next);
-    match draw_into(shot, transparent, progress, save) {
-        Ok((Ok(()), _)) => Made::Done(path.to_owned(), Vec::new()),
-        Ok((Err(why), _)) => Made::Failed(why.to_string()),
-        Err(io::Cancelled) => Made::Cancelled,
-    }
-}
-
-/// Draws a turntable into a file.
-fn turntable(
-    path: &Path,
-    shot: &Shot,
-    choices: &PictureChoices,
-    sources: &Sources,
-    progress: &Progress,
-) -> Made {
-    match turn_into(path, shot, choices, sources, progress) {
-        Ok(Some(notes)) => Made::Done(path.to_owned(), notes),
-        Ok(None) => Made::Cancelled,
-        Err(why) => Made::Failed(why),
-    }
-}
-
-/// Does the work of [`turntable`]. Returns the notes about the file, or `None` if it was cancelled.
-fn turn_into(
-    path: &Path,
-    shot: &Shot,
-    choices: &PictureChoices,
-    sources: &Sources,
-    progress: &Progress,
-) -> Result<Option<Vec<String>>, String> {
-    let PictureChoices { frames, seconds, transparent, turn, .. } = *choices;
-    let fail = |error: &dyn std::fmt::Display| error.to_string();
-    let animation = Animation { size: shot.size, frames, seconds, transparent };
-    let mut writer = AnimationWriter::begin(path, animation, sources).map_err(|it| fail(&it))?;
-    let notes = writer.notes().to_vec();
-    let mut renderer = Renderer::default();
-    // Frames are written one by one, so memory holds a single picture.
-    for i in 0..frames {
-        let part = f64::from(i) / f64::from(frames);
-        let scene = turned(&shot.scene, &shot.view, turn, part).map_err(|it| fail(&it))?;
-        let view = View { time: shot.view.time + seconds * part, ..shot.view.clone() };
-        let shot = Shot { scene, view, ..shot.clone() };
-        let wanted = || !progress.is_cancelled();
-        let drawn = if transparent {
-            without_ground_while(&mut renderer, &shot, &wanted)
-        } else {
-            renderer.redraw(&plan_frame(&shot), &wanted).map(|_| renderer.picture().clone())
-        };
-        let Ok(picture) = drawn else { return Ok(None) };
-        writer.push(&picture).map_err(|it| fail(&it))?;
-        if progress.reached(i as usize + 1, frames as usize).is_err() {
-            return Ok(None);
+    fn picture(&self, shot: &Shot, transparent: bool, progress: &Progress) -> Notes {
+        let save =
+            |size, next: &mut io::NextBand<'_>| io::save_bands(&self.path, size, transparent, next);
+        match draw_into(shot, transparent, progress, save) {
+            Ok((Ok(()), _)) => Ok(Some(Vec::new())),
+            Ok((Err(why), _)) => Err(why.to_string()),
+            Err(io::Cancelled) => Ok(None),
         }
     }
-    writer.finish().map_err(|it| fail(&it))?;
-    Ok(Some(notes))
+
+    fn turntable(
+        &self,
+        shot: &Shot,
+        choices: &PictureChoices,
+        sources: &Sources,
+        progress: &Progress,
+    ) -> Notes {
+        let PictureChoices { frames, seconds, transparent, turn, .. } = *choices;
+        let fail = |error: &dyn std::fmt::Display| error.to_string();
+        let animation = Animation { size: shot.size, frames, seconds, transparent };
+        let mut writer =
+            AnimationWriter::begin(&self.path, animation, sources).map_err(|it| fail(&it))?;
+        let notes = writer.notes().to_vec();
+        let mut renderer = Renderer::default();
+        // Frames are written one by one, so memory holds a single picture.
+        for i in 0..frames {
+            let part = f64::from(i) / f64::from(frames);
+            let scene = turned(&shot.scene, &shot.view, turn, part).map_err(|it| fail(&it))?;
+            let view = View { time: shot.view.time + seconds * part, ..shot.view.clone() };
+            let shot = Shot { scene, view, ..shot.clone() };
+            let wanted = || !progress.is_cancelled();
+            let drawn = if transparent {
+                without_ground_while(&mut renderer, &shot, &wanted)
+            } else {
+                renderer.redraw(&plan_frame(&shot), &wanted).map(|_| renderer.picture().clone())
+            };
+            let Ok(picture) = drawn else { return Ok(None) };
+            writer.push(&picture).map_err(|it| fail(&it))?;
+            if progress.reached(i as usize + 1, frames as usize).is_err() {
+                return Ok(None);
+            }
+        }
+        writer.finish().map_err(|it| fail(&it))?;
+        Ok(Some(notes))
+    }
 }

@@ -12,12 +12,13 @@ use std::time::{Duration, SystemTime};
 use egui::Context;
 
 use super::App;
+use super::missing::Replacements;
 use crate::app::documents::loading::{Fetched, Reread};
 use crate::app::state::Notice;
-use crate::app::widgets::text::file_name;
+use crate::app::widgets::text::{file_name, one_or_count};
 use marraztu_core::base::Shared;
 use marraztu_core::edit::Gesture;
-use marraztu_core::scene::{Command, Item, Model, Object, Scene};
+use marraztu_core::scene::{Command, Model, Scene};
 use marraztu_io::{self as io, LoadError, is_example};
 
 /// The time between two checks of the files.
@@ -41,10 +42,8 @@ impl App {
             }
             return;
         }
-        let label = match wanted.as_slice() {
-            [(path, _)] => format!("Reloading {}", file_name(path)),
-            all => format!("Reloading {} models", all.len()),
-        };
+        let what = one_or_count(&wanted, "models", |(path, _)| file_name(path));
+        let label = format!("Reloading {what}");
         self.begin_loading(ctx, label, false, move |progress| {
             let read = |(path, before): (PathBuf, Shared<Model>)| Reread {
                 result: io::load(&path, &before.options, progress),
@@ -56,28 +55,25 @@ impl App {
 
     /// Replaces models by those read again, in one step of undo.
     pub(crate) fn take_again(&mut self, all: Vec<Reread>) {
-        let (mut models, mut names) = (Vec::new(), Vec::new());
+        let (mut replacements, mut names) = (Replacements::default(), Vec::new());
         for Reread { before, result } in all {
             match result {
                 Ok(loaded) => {
                     names.push(loaded.model.name.clone());
-                    models.push((before, Shared::new(loaded.model)));
+                    replacements.models.push((before, Shared::new(loaded.model)));
                 }
                 Err(LoadError::Cancelled) => {}
                 Err(error) => {
                     let text = format!("{error}. The model is unchanged.");
-                    self.state.notices.push(Notice { text, details: Vec::new(), offer: None });
+                    self.state.notices.push(Notice::new(text));
                 }
             }
         }
-        let commands = replaced(&self.state.scene, &models);
+        let commands: Vec<Command> = replacements.of_objects(&self.state.scene).collect();
         if commands.is_empty() {
             return;
         }
-        let label = match names.as_slice() {
-            [name] => format!("Reload {name}"),
-            names => format!("Reload {} models", names.len()),
-        };
+        let label = format!("Reload {}", one_or_count(&names, "models", String::clone));
         self.change(Command::Batch(commands), Gesture::Whole, &label);
         self.state.tell(Some(label));
     }
@@ -95,20 +91,6 @@ impl App {
             self.reload_models(ctx, Some(&changed));
         }
     }
-}
-
-/// Creates the commands that replace the models of objects.
-fn replaced(scene: &Scene, models: &[(Shared<Model>, Shared<Model>)]) -> Vec<Command> {
-    let again = |object: &Object| {
-        let (_, model) = models.iter().find(|(old, _)| Shared::same(old, &object.model))?;
-        let parts = u32::try_from(model.mesh.parts().len()).unwrap_or(u32::MAX);
-        let mut object = object.clone();
-        object.model = model.clone();
-        object.hidden_parts.retain(|part| *part < parts);
-        Some(object)
-    };
-    let changed = scene.objects.iter().filter_map(|(id, object)| Some((id, again(object)?)));
-    changed.map(|(id, object)| Command::Replace(Item::Object(id, Box::new(object)))).collect()
 }
 
 /// Returns the file of a model; `None` for the program's models.

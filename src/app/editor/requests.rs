@@ -12,6 +12,7 @@ use super::App;
 use crate::app::actions::{
     Action, Chord, FileIntent, Intent, KeyRequest, LabRequest, Request, resolve,
 };
+use crate::app::documents::dialogs::Dialog;
 use crate::app::documents::material_dialog::MaterialDialog;
 use crate::app::documents::picture_dialog::{PictureChoices, Purpose};
 use crate::app::documents::wanted::{After, Wanted};
@@ -22,7 +23,7 @@ use crate::app::state::{Message, Offer, State, Tone};
 use marraztu_core::edit::selection::{self, Selection};
 use marraztu_core::edit::several::Others;
 use marraztu_core::edit::{Gesture, GesturePhase, Selected, aiming, items, lights};
-use marraztu_core::scene::{Command, ItemId, Subject, View};
+use marraztu_core::scene::{Command, ItemId, View};
 use marraztu_io::is_example;
 
 impl App {
@@ -143,7 +144,8 @@ impl App {
             // Notices. An earlier request of the frame may have removed some: indices are checked.
             Request::Details(at) => {
                 if let Some(notice) = state.notices.get(at) {
-                    self.dialogs.tell_details(notice.text.clone(), notice.details.clone());
+                    let (text, details) = (notice.text.clone(), notice.details.clone());
+                    self.dialogs.show(Dialog::Details(text, details));
                 }
             }
             Request::PutAway(at) => {
@@ -204,9 +206,7 @@ impl App {
             Ok(Intent::Navigate(command)) => self.navigate(command, gesture),
             Ok(Intent::View(view)) => self.show_view(*view),
             Ok(Intent::Select(selection)) => self.select(*selection, gesture),
-            Ok(Intent::Drawing(choices)) => self.state.drawing = choices,
-            Ok(Intent::Panels(panels)) => self.state.panels = panels,
-            Ok(Intent::Layout(layout)) => self.state.layout = layout,
+            Ok(Intent::Show(change)) => change(&mut self.state),
             Ok(Intent::Theme(theme)) => {
                 self.state.theme = theme;
                 ctx.set_theme(theme);
@@ -225,31 +225,16 @@ impl App {
             }
             Ok(Intent::File(intent)) => self.file(ctx, intent),
             Ok(Intent::Clipboard(intent)) => self.clipboard(ctx, intent, &label),
-            Ok(Intent::AskCamera) => self.dialogs.ask_material(MaterialDialog::of_camera()),
+            Ok(Intent::AskCamera) => {
+                self.dialogs.show(Dialog::Material(Box::new(MaterialDialog::of_camera())));
+            }
             Ok(Intent::Measure) => self.measure(ctx),
             Ok(Intent::ChooseTexture(id)) => self.ask_file(ctx, Wanted::Texture(id), ""),
             Ok(Intent::WhyUnseen(id)) => self.why_unseen(ctx, id),
-            Ok(Intent::Palette) => self.state.palette ^= true,
             Ok(Intent::Zoom(zoom)) => ctx.set_zoom_factor(zoom),
-            Ok(Intent::Overlays) => self.state.overlays ^= true,
-            Ok(Intent::Watch) => self.state.watches ^= true,
             Ok(Intent::FitExposure) => self.fit_exposure(),
-            Ok(Intent::Helpers(helpers)) => self.state.helpers = helpers,
-            Ok(Intent::Gizmo) => self.state.gizmo ^= true,
-            Ok(Intent::Dial) => self.state.dial.shown ^= true,
             Ok(Intent::Loupe) => self.toggle_loupe(ctx),
-            Ok(Intent::Settings(settings)) => self.state.settings = settings,
-            Ok(Intent::Coarse) => self.state.coarse_while_moving ^= true,
             Ok(Intent::TypeAmount) => self.type_amount(ctx),
-            Ok(Intent::Others(others)) => self.state.several = others,
-            Ok(Intent::AimByClick) => {
-                self.state.aiming ^= true;
-                self.state.explaining = false;
-            }
-            Ok(Intent::Explain) => {
-                self.state.explaining ^= true;
-                self.state.aiming = false;
-            }
             Ok(Intent::ChangeKeyboardOwner(way)) => Keyboard::change_owner(ctx, way),
         }
     }
@@ -293,7 +278,7 @@ impl App {
             FileIntent::Recover => self.unless_unsaved(ctx, After::Recover(0)),
             FileIntent::RecoverDiscarded => match &self.state.discarded[..] {
                 [_] => self.unless_unsaved(ctx, After::RecoverDiscarded(0)),
-                all => self.dialogs.list_discarded(all.to_vec()),
+                all => self.dialogs.show(Dialog::Discarded(all.to_vec())),
             },
             FileIntent::FindMissing => self.find_missing(ctx, None),
             FileIntent::Reload => self.reload_models(ctx, None),
@@ -313,7 +298,10 @@ impl App {
     /// recent files.
     fn note_folders(&mut self, wanted: &Wanted) {
         let own = match wanted {
-            Wanted::TextureOfModel => self.dialogs.model_file().map(Path::to_owned),
+            Wanted::TextureOfModel => {
+                let loaded = self.dialogs.material().and_then(|dialog| dialog.loaded.as_ref());
+                loaded.map(|(path, _)| path.clone())
+            }
             Wanted::Texture(id) => {
                 let object = self.state.scene.objects.get(*id);
                 object.and_then(|object| object.model.source.clone())
@@ -351,7 +339,6 @@ impl App {
         }
     }
 
-    /// Changes the view.
     pub(crate) fn show_view(&mut self, view: View) {
         self.state.message = None;
         self.state.view = view;
@@ -363,13 +350,6 @@ impl App {
             self.navigate(command, gesture);
         }
         self.show_view(selection.view);
-    }
-
-    /// Adds an item and makes its kind the subject.
-    pub(crate) fn add(&mut self, command: Command, subject: Subject, label: &str) {
-        self.change_then(command, Gesture::Whole, label, |state| {
-            selection::set_subject(&mut state.view, subject);
-        });
     }
 
     /// Changes the scene. Every change except undo and redo ends here.
@@ -422,7 +402,6 @@ impl App {
     }
 }
 
-/// Answers a request about keys.
 fn answer_keys(ctx: &Context, request: KeyRequest) {
     let mut keymap = Keymap::clone(&Keyboard::keymap(ctx));
     match request {

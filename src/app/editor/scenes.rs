@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use egui::Context;
 
 use super::App;
+use crate::app::documents::dialogs::Dialog;
 use crate::app::documents::loading::{Fetched, Opening};
 use crate::app::documents::material_dialog::{details, short};
 use crate::app::documents::wanted::{After, ChangedFile, Wanted};
@@ -44,7 +45,7 @@ impl App {
             None => path.exists(),
         };
         if is_own && has_changed {
-            return self.dialogs.ask_changed(path, after);
+            return self.dialogs.show(Dialog::Changed(path, after));
         }
         self.write_scene(ctx, path, after);
     }
@@ -82,22 +83,21 @@ impl App {
 
     /// Opens a scene in place of this one. The caller has asked about unsaved changes.
     pub(crate) fn open_scene(&mut self, ctx: &Context, path: PathBuf) {
-        let label = format!("Opening {}", file_name(&path));
-        self.note_opening(&path);
+        self.read_scene(ctx, format!("Opening {}", file_name(&path)), path);
+    }
+
+    /// Reads a scene, to show it in place of this one.
+    pub(crate) fn read_scene(&mut self, ctx: &Context, label: String, path: PathBuf) {
+        // A host that has to provide the scene's files first is told.
+        if cfg!(target_family = "wasm") {
+            self.opening.push(path.clone());
+        }
         self.begin_loading(ctx, label, false, move |progress| {
             let result = io::open(&path, progress);
             Fetched::Scene(Box::new(Opening { path, result }))
         });
     }
 
-    /// Notes a scene that will be read, for a host that has to provide its files first.
-    pub(crate) fn note_opening(&mut self, path: &Path) {
-        if cfg!(target_family = "wasm") {
-            self.opening.push(path.to_owned());
-        }
-    }
-
-    /// Shows an opened scene.
     pub(crate) fn take_scene(&mut self, ctx: &Context, opening: Opening) {
         let Opening { path, result } = opening;
         match result {

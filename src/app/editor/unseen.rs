@@ -7,7 +7,6 @@ use egui::Context;
 use super::App;
 use crate::app::state::{Notice, Offer, State};
 use crate::app::tasks::{Outcome, Task};
-use marraztu_core::accuracy::Shot;
 use marraztu_core::base::image::Size;
 use marraztu_core::scene::{ItemId, Object, ObjectId, Projection};
 use marraztu_render::plan_frame;
@@ -47,11 +46,8 @@ impl App {
     }
 
     fn search(&mut self, ctx: &Context, ids: Vec<ObjectId>, asked: Option<ObjectId>) {
-        let State { scene, view, settings, .. } = &self.state;
-        let (scene, view, settings) = (scene.clone(), view.clone(), *settings);
-        let size = self.viewport.size().unwrap_or(SIZE);
+        let shot = self.state.shot(self.viewport.size().unwrap_or(SIZE));
         let search = Task::start(ctx, "looking for objects".to_owned(), move |_| {
-            let shot = Shot::new(&scene, &view, &settings, size);
             let plan = plan_frame(&shot);
             let mut renderer = Renderer::default();
             renderer.render(&plan);

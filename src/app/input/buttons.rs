@@ -2,21 +2,15 @@
 //!
 //! Their tooltips say what the action does, which key it has, and why it is not available now.
 
-use egui::{Atom, Context, IdSalt, Response, RichText, Role, Ui, WidgetInfo};
+use egui::{Atom, IdSalt, Response, RichText, Role, Ui, WidgetInfo};
 
-use super::keyboard::{Keyboard, Press};
-use crate::app::actions::{Action, Request};
+use super::keyboard::Keyboard;
+use crate::app::actions::{Action, Requests};
 use crate::app::state::State;
 use crate::app::widgets::controls::{Choice, Switch, icon_button};
 use crate::app::widgets::icons::Icon;
 
 impl Action {
-    /// Takes the key presses of this frame, in order.
-    #[must_use]
-    pub fn pressed(ctx: &Context) -> Vec<Press> {
-        Keyboard::take(ctx)
-    }
-
     /// Shows a button for the action. Returns the action if it was clicked.
     pub fn button(self, ui: &mut Ui, state: &State) -> Option<Self> {
         self.add(ui, state, egui::Button::new(self.info().label))
@@ -45,7 +39,7 @@ impl Action {
         let shown = ui.add_enabled_ui(enabled, |ui| button.atom_ui(ui)).inner;
         if self.is_on(state) == Some(true) {
             for (_, rect) in shown.custom_rects().filter(|(id, _)| *id == tick) {
-                Icon::Tick.paint(ui.painter(), rect, 10.0, ui.visuals().text_color());
+                Icon::TICK.paint(ui.painter(), rect, 10.0, ui.visuals().text_color());
             }
         }
         shown.response.widget_info(|| match self.is_on(state) {
@@ -95,18 +89,12 @@ impl Action {
     }
 }
 
-/// Returns the name of the first key of an action.
 pub(crate) fn first_key(ui: &Ui, action: Action) -> Option<String> {
     Keyboard::keymap(ui.ctx()).keys(action).first().map(|key| key.name())
 }
 
 /// Shows the switch of an action, with its key and its tooltip.
-pub(crate) fn action_switch(
-    ui: &mut Ui,
-    state: &State,
-    requests: &mut Vec<Request>,
-    action: Action,
-) {
+pub(crate) fn action_switch(ui: &mut Ui, state: &State, requests: &mut Requests, action: Action) {
     let info = action.info();
     let switch = Switch {
         label: info.label,
@@ -119,11 +107,10 @@ pub(crate) fn action_switch(
     }
 }
 
-/// Shows the icon button of an action.
 pub(crate) fn action_icon(
     ui: &mut Ui,
     state: &State,
-    requests: &mut Vec<Request>,
+    requests: &mut Requests,
     icon: Icon,
     action: Action,
 ) {

@@ -18,13 +18,13 @@ use marraztu_core::edit::Gesture;
 
 /// A key press that triggers an action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Press {
+pub(crate) struct Press {
     /// The action.
-    pub action: Action,
+    pub(crate) action: Action,
     /// The key.
-    pub chord: Chord,
+    pub(crate) chord: Chord,
     /// The gesture. It lasts from the press of a key to its release.
-    pub gesture: Gesture,
+    pub(crate) gesture: Gesture,
 }
 
 /// Reads the keys of one [`Context`].
@@ -47,7 +47,6 @@ pub(crate) struct Keyboard {
     /// Whether an Esc was held back since the last query.
     held_escape: bool,
     keymap: Arc<Keymap>,
-    /// The pasted text.
     pasted: Option<String>,
     /// Whether the text of the clipboard was requested from the window.
     asks_paste: bool,
@@ -224,7 +223,6 @@ impl Keyboard {
     }
 }
 
-/// Returns the key of a clipboard event.
 const fn clipboard_key(event: &Event) -> Option<Key> {
     match event {
         Event::Cut => Some(Key::X),

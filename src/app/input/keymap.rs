@@ -17,7 +17,6 @@ fn place(action: Action) -> usize {
 }
 
 impl Keymap {
-    /// Returns the keys of an action.
     pub(crate) fn keys(&self, action: Action) -> &[Chord] {
         self.chosen.get(&place(action)).map_or(action.info().keys, Vec::as_slice)
     }
@@ -41,7 +40,6 @@ impl Keymap {
         self.choose(action, vec![chord]);
     }
 
-    /// Takes a key from an action.
     fn take(&mut self, from: Action, chord: Chord) {
         let keys = self.keys(from).iter().copied().filter(|it| !it.clashes_with(chord));
         self.choose(from, keys.collect());
@@ -115,7 +113,6 @@ impl Keymap {
     }
 }
 
-/// Parses the name of a chord.
 fn chord_named(name: &str) -> Option<Chord> {
     if let Some(key) = name.strip_prefix("Ctrl+Shift+").or_else(|| name.strip_prefix("Cmd+Shift+"))
     {

@@ -1,10 +1,11 @@
 //! About: version, commit, instructions in use, and the licences of the program and of its
 //! packages. `tools/licences.py` creates the list of packages.
 
-use egui::{Rect, RichText, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, Window, vec2};
+use egui::{Rect, RichText, Role, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, vec2};
 use fearless_simd::Level;
 
-use crate::app::actions::{Action, Request};
+use super::arrange::window;
+use crate::app::actions::Requests;
 use crate::app::panels::Panel;
 use crate::app::state::State;
 use crate::app::theme;
@@ -19,21 +20,8 @@ const INSTALLATION: &str = include_str!("../../../docs/install.md");
 
 const SIZE: egui::Vec2 = vec2(460.0, 460.0);
 
-/// Shows the panel; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, _state: &State, requests: &mut Vec<Request>) {
-    let mut open = true;
-    let room = ui.ctx().content_rect().size() - vec2(80.0, 120.0);
-    let size = SIZE.min(room);
-    Window::new(Panel::About.info().label)
-        .open(&mut open)
-        .collapsible(false)
-        .resizable(false)
-        .default_pos(ui.ctx().content_rect().center() - size / 2.0)
-        .fixed_size(size)
-        .show(ui.ctx(), contents);
-    if !open {
-        requests.push(Action::Panel(Panel::About).into());
-    }
+pub(crate) fn show(ui: &mut Ui, _state: &State, requests: &mut Requests) {
+    window(ui, Panel::About, SIZE, requests, |ui, _| contents(ui));
 }
 
 /// Returns the facts that identify the program in a bug report.

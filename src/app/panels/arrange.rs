@@ -1,25 +1,24 @@
 //! Arranges the panels around the picture and shows the open ones.
 
-use egui::{Frame, Layout, Margin, Rect, Ui, UiBuilder};
+use egui::{Frame, Layout, Margin, Rect, Ui, UiBuilder, Vec2, Window, vec2};
 
 use super::{Dock, Panel, Side, each_panel};
 use super::{dial, greeting, lesson_card, menu_bar, palette, splitters, status_line};
-use crate::app::actions::Request;
+use crate::app::actions::{Action, Requests};
 use crate::app::state::State;
 use crate::app::state::layout::Places;
 use crate::app::theme;
 use crate::app::widgets::regions;
 
 /// The places of the panels in one frame.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Arrangement {
     /// The area between the menus and the status line.
     area: Rect,
     places: Places,
 }
 
-/// Shows the contents of a panel and adds its requests.
-type Contents = fn(&mut Ui, &State, &mut Vec<Request>);
+type Contents = fn(&mut Ui, &State, &mut Requests);
 
 macro_rules! contents {
     ($(
@@ -36,6 +35,29 @@ macro_rules! contents {
 
 each_panel!(contents);
 
+/// Shows a panel as a window of a fixed size, or less in a small window. Its button closes the panel.
+pub(super) fn window(
+    ui: &Ui,
+    panel: Panel,
+    size: Vec2,
+    requests: &mut Requests,
+    add: impl FnOnce(&mut Ui, &mut Requests),
+) {
+    let mut open = true;
+    let area = ui.ctx().content_rect();
+    let size = size.min(area.size() - vec2(80.0, 120.0));
+    Window::new(panel.info().label)
+        .open(&mut open)
+        .collapsible(false)
+        .resizable(false)
+        .default_pos(area.center() - size / 2.0)
+        .fixed_size(size)
+        .show(ui.ctx(), |ui| add(ui, requests));
+    if !open {
+        requests.push(Action::Panel(panel).into());
+    }
+}
+
 impl Arrangement {
     /// Returns the area left for the picture.
     pub(crate) const fn picture(&self) -> Rect {
@@ -44,7 +66,7 @@ impl Arrangement {
 
     /// Shows everything over the picture: open panels, the palette and the greeting. The splitters
     /// come last, since the picture would take their presses.
-    pub(crate) fn over_picture_ui(&self, ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+    pub(crate) fn over_picture_ui(&self, ui: &mut Ui, state: &State, requests: &mut Requests) {
         if state.picture_only {
             return;
         }
@@ -63,7 +85,7 @@ impl Arrangement {
 }
 
 /// Shows the bars and all open docked panels.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) -> Arrangement {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) -> Arrangement {
     if state.picture_only {
         let area = ui.available_rect_before_wrap();
         return Arrangement { area, places: Places::of_picture(area) };

@@ -3,7 +3,7 @@
 use egui::{Id, Key, RichText, ScrollArea, TextStyle, Ui, Window, vec2};
 
 use crate::app::actions::search::{Search, Texts};
-use crate::app::actions::{Action, Group, KeyRequest, MouseInfo, Request};
+use crate::app::actions::{Action, Group, KeyRequest, MouseInfo, Request, Requests};
 use crate::app::input::keyboard::Keyboard;
 use crate::app::input::keymap::Keymap;
 use crate::app::panels::Panel;
@@ -16,8 +16,7 @@ const KEYS: f32 = 170.0;
 const LABEL: f32 = 150.0;
 const NOW: f32 = 36.0;
 
-/// Shows the panel; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let mut open = true;
     let room = ui.ctx().content_rect().size() - vec2(80.0, 120.0);
     Window::new("Keys")
@@ -33,7 +32,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     }
 }
 
-fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn contents(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let id = Id::unique("search among the keys");
     // If the previous pass did not show the panel, it was just opened: the old search is cleared.
     let pass = ui.ctx().cumulative_pass_nr();
@@ -75,7 +74,7 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
         for group in Group::ALL {
             let actions: Vec<Action> = group
                 .actions()
-                .filter(|it| it.score_on(keymap.keys(*it), &mut search, &wanted).is_some())
+                .filter(|it| it.score(keymap.keys(*it), &mut search, &wanted).is_some())
                 .collect();
             if actions.is_empty() {
                 continue;
@@ -103,7 +102,7 @@ fn switched_id() -> Id {
 }
 
 /// Shows the switch between using and changing keys. Returns whether keys are being changed.
-fn changes_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Vec<Request>) -> bool {
+fn changes_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Requests) -> bool {
     let id = Id::unique("keys are changed");
     let mut changes = ui.data(|data| data.get_temp(id)).unwrap_or(false);
     ui.horizontal(|ui| {
@@ -125,7 +124,7 @@ fn changes_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Vec<Request>) -> bool
 }
 
 /// Asks for a key, or reports that another action has the chosen key.
-fn choosing_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Vec<Request>) {
+fn choosing_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Requests) {
     let Some((action, chord)) = Keyboard::choosing(ui.ctx()) else { return };
     let label = action.info().label;
     let Some(chord) = chord else {
@@ -150,7 +149,7 @@ fn choosing_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Vec<Request>) {
 }
 
 /// Shows an action with a button that changes its key.
-fn change_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Vec<Request>, action: Action) {
+fn change_ui(ui: &mut Ui, keymap: &Keymap, requests: &mut Requests, action: Action) {
     let label = action.info().label;
     ui.horizontal(|ui| {
         let keys: Vec<String> = keymap.keys(action).iter().map(|key| key.name()).collect();
@@ -228,7 +227,7 @@ impl Columns<'_> {
 }
 
 /// Shows an action; a click performs it.
-fn line(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, action: Action) {
+fn line(ui: &mut Ui, state: &State, requests: &mut Requests, action: Action) {
     let info = action.info();
     let available = action.availability(state);
     let enabled = available.is_ok();

@@ -5,21 +5,20 @@
 //! figures are grey. A click draws with the settings of a row. Over a low picture, the dial is one
 //! row, which unfolds the others.
 
-use egui::{Align2, Area, Color32, ComboBox, Frame, Id, Order, Rect, RichText, Role, Sense};
+use egui::{Align2, Area, ComboBox, Frame, Id, Order, Rect, RichText, Role, Sense};
 use egui::{TextStyle, Ui, WidgetInfo, pos2, vec2};
 
-use crate::app::actions::{Action, Request};
+use crate::app::actions::{Action, Request, Requests};
 use crate::app::input::buttons::first_key;
 use crate::app::state::State;
 use crate::app::state::laboratory::Compare;
 use crate::app::theme;
-use crate::app::widgets::controls::{self, focus_ring, icon_at, put_text};
+use crate::app::widgets::controls::{self, focus_ring, icon_at, put_text, right_text, row_ground};
 use crate::app::widgets::icons::Icon;
 use crate::app::widgets::regions;
 use marraztu_core::accuracy::{ACCURACY_PRESETS, AccuracyPreset, Settings};
 use marraztu_lab::dial::{Figures, error_in_words, in_words};
 
-/// The width of the contents.
 const WIDTH: f32 = 216.0;
 
 /// The right ends of the columns of time and error.
@@ -34,8 +33,7 @@ const UNFOLDED: f32 = 300.0;
 /// Over a lower picture, the dial is one row until it is clicked.
 const LOW: f32 = 400.0;
 
-/// Shows the dial; its requests are added to `requests`.
-pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Requests) {
     let is_small = picture.width() < LEAST.x || picture.height() < LEAST.y;
     // A comparison has its own labels there.
     if !state.shows_dial() || is_small || state.lab.compare != Compare::Off {
@@ -60,7 +58,7 @@ pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Vec<Req
 }
 
 /// Shows the row of the current settings, which unfolds the others.
-fn folded_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn folded_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let rows = rows(state);
     let on = rows.iter().find(|row| row.settings == state.settings);
     let mut text = RichText::new(on.map_or_else(|| "Accuracy".to_owned(), |row| row.name(state)));
@@ -76,7 +74,7 @@ fn folded_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     combo.response.accessible_name("Accuracy").on_hover_text(hint);
 }
 
-fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn contents(ui: &mut Ui, state: &State, requests: &mut Requests) {
     head_ui(ui, state, requests);
     let rows = rows(state);
     let ids: Vec<Id> = rows.iter().map(|row| ui.scope_id().with(row.label)).collect();
@@ -100,7 +98,7 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 }
 
 /// Shows the heads of the columns, and the button of the loupe.
-fn head_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn head_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let (rect, _) = ui.allocate_exact_size(vec2(WIDTH, theme::ROW - 2.0), Sense::hover());
     let weak = ui.visuals().weak_text_color();
     let heads = [
@@ -119,7 +117,7 @@ fn head_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     put_text(ui, rect.with_min_x(rect.left() + 4.0), title, weak);
     for ((head, hint), right) in heads.into_iter().zip(COLUMNS) {
         let cell = column(rect, right);
-        right_text(ui, cell, head, weak);
+        right_text(ui, cell, head, TextStyle::Body, weak);
         ui.interact(cell, ui.scope_id().with(("head", head)), Sense::hover()).on_hover_text(hint);
     }
     let square =
@@ -128,14 +126,13 @@ fn head_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     if state.loupe {
         ui.painter().rect_filled(square, 3.0, ui.visuals().selection.bg_fill);
     }
-    icon_at(ui, square, &response, Icon::Loupe, "Loupe", true);
+    icon_at(ui, square, &response, Icon::LOUPE, "Loupe", true);
     let hint = "Loupe: shows the pixels under the pointer next to the ideal. Or hold the key k.";
     if response.on_hover_text(hint).clicked() {
         requests.push(Request::Do(Action::ToggleLoupe));
     }
 }
 
-/// A row of the dial.
 struct Row {
     label: &'static str,
     hint: String,
@@ -179,13 +176,7 @@ impl Row {
         let response = ui.interact(rect, id, regions::sense(Sense::click(), is_stop));
         let (figures, name) = (state.dial.of(&self.settings), self.name(state));
         response.widget_info(|| WidgetInfo::selected(Role::RadioButton, true, is_on, &name));
-        let visuals = ui.visuals();
-        let (fill, ink) = match (is_on, response.hovered()) {
-            (true, _) => (visuals.selection.bg_fill, visuals.selection.stroke.color),
-            (false, true) => (visuals.widgets.hovered.bg_fill, visuals.text_color()),
-            (false, false) => (Color32::TRANSPARENT, visuals.text_color()),
-        };
-        ui.painter().rect_filled(rect, 3.0, fill);
+        let ink = row_ground(ui, &response, is_on);
         if is_on {
             let bar =
                 Rect::from_min_size(rect.min + vec2(0.0, 3.0), vec2(2.0, rect.height() - 6.0));
@@ -202,7 +193,7 @@ impl Row {
             }
         };
         for (text, right) in texts.iter().zip(COLUMNS) {
-            right_text(ui, column(rect, right), text, ink);
+            right_text(ui, column(rect, right), text, TextStyle::Body, ink);
         }
         focus_ring(ui, rect, &response);
         let key = self.action.and_then(|action| first_key(ui, action));
@@ -230,10 +221,4 @@ fn milliseconds(ms: f64) -> String {
 
 fn column(row: Rect, right: f32) -> Rect {
     Rect::from_x_y_ranges(row.left() + right - 62.0..=row.left() + right, row.y_range())
-}
-
-fn right_text(ui: &Ui, rect: Rect, value: &str, ink: Color32) {
-    let galley = controls::text(ui, value, TextStyle::Body, rect.width());
-    let at = pos2(rect.right() - galley.size().x, rect.center().y - galley.size().y / 2.0);
-    ui.painter().galley_with_override_text_color(at, galley, ink);
 }

@@ -7,7 +7,7 @@ use egui::{
 };
 
 use super::status_line::middle_elided;
-use crate::app::actions::{Action, LabRequest, Request};
+use crate::app::actions::{Action, LabRequest, Request, Requests};
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::regions;
@@ -33,8 +33,7 @@ const LEAST_FOR_THUMBNAILS: Vec2 = vec2(640.0, 500.0);
 /// The size of a thumbnail in points: half of its pixels.
 const THUMBNAIL: Vec2 = vec2(144.0, 90.0);
 
-/// Shows the greeting; its requests are added to `requests`.
-pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Requests) {
     let is_small = picture.size().min_elem() < LEAST_SIDE || picture.area() < LEAST_AREA;
     if !state.greeting || !state.overlays || is_small {
         return;
@@ -54,7 +53,7 @@ pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Vec<Req
 }
 
 /// Shows one row each for files to open, examples, and lessons.
-fn contents(ui: &mut Ui, is_roomy: bool, state: &State, requests: &mut Vec<Request>) {
+fn contents(ui: &mut Ui, is_roomy: bool, state: &State, requests: &mut Requests) {
     ui.horizontal_wrapped(|ui| {
         ui.weak("Drop a model here, or");
         let hint = "Shows a model alone, framed and lit";

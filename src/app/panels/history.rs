@@ -2,18 +2,16 @@
 
 use egui::{Atom, Button, Pos2, ScrollArea, Ui, Window};
 
-use crate::app::actions::{Action, Request};
+use crate::app::actions::{Action, Request, Requests};
 use crate::app::panels::Panel;
 use crate::app::state::State;
 
-/// The default width.
 const WIDTH: f32 = 240.0;
 
 /// The number of visible steps; the others are scrolled to.
 const ROWS: f32 = 14.0;
 
-/// Shows the panel; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let mut open = true;
     let picture = ui.max_rect();
     // Notices appear at the upper edge.
@@ -31,7 +29,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 }
 
 /// Lists the steps; a click goes to the state after a step. Returns whether one was clicked.
-pub(super) fn list_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) -> bool {
+pub(super) fn list_ui(ui: &mut Ui, state: &State, requests: &mut Requests) -> bool {
     let history = &state.history;
     let labels: Vec<&str> = std::iter::once("Beginning").chain(history.steps()).collect();
     let row = ui.spacing().interact_size.y;

@@ -4,7 +4,7 @@
 use egui::{Frame, Rect, RichText, ScrollArea, TextStyle, Ui, UiBuilder, vec2};
 
 use super::view_switches::axis_ui;
-use crate::app::actions::{LabRequest, Request};
+use crate::app::actions::{LabRequest, Request, Requests};
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::regions;
@@ -18,7 +18,7 @@ const MOST: f32 = 0.6;
 
 /// Shows the card of the lesson on show at the bottom of an area; its requests are added to
 /// `requests`. Returns the area left for the picture: the card hides nothing of its subject.
-pub(crate) fn show(ui: &mut Ui, area: Rect, state: &State, requests: &mut Vec<Request>) -> Rect {
+pub(crate) fn show(ui: &mut Ui, area: Rect, state: &State, requests: &mut Requests) -> Rect {
     let Some(lesson) = state.lab.lesson else { return area };
     let mut child = ui.new_child(UiBuilder::new().id_salt("lesson").max_rect(area));
     let frame = Frame::new().fill(ui.visuals().panel_fill).inner_margin(10.0);
@@ -43,7 +43,7 @@ pub(crate) fn show(ui: &mut Ui, area: Rect, state: &State, requests: &mut Vec<Re
     child.available_rect_before_wrap()
 }
 
-fn contents(ui: &mut Ui, lesson: &'static Lesson, state: &State, requests: &mut Vec<Request>) {
+fn contents(ui: &mut Ui, lesson: &'static Lesson, state: &State, requests: &mut Requests) {
     ui.label(RichText::new(&lesson.title).heading());
     ui.add(egui::Label::new(&lesson.why).wrap());
     ui.add(egui::Label::new(&lesson.look).wrap());

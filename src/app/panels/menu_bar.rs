@@ -6,7 +6,7 @@ use egui::{
 };
 
 use super::{history, undo_buttons};
-use crate::app::actions::{Action, Group, LabRequest, Request};
+use crate::app::actions::{Action, Group, LabRequest, Request, Requests};
 use crate::app::input::buttons::first_key;
 use crate::app::panels::Panel;
 use crate::app::state::State;
@@ -19,7 +19,6 @@ use marraztu_io::{EXAMPLES, lessons};
 /// The actions of [`Group::Window`] in the submenu for themes.
 const THEMES: [Action; 3] = [Action::ThemeSystem, Action::ThemeLight, Action::ThemeDark];
 
-/// The actions in the Help menu.
 const HELP: [Action; 4] = [
     Action::Palette,
     Action::Panel(Panel::CheatSheet),
@@ -62,8 +61,7 @@ const OPENS: [Action; 4] = [Action::New, Action::NewAncestor, Action::Open, Acti
 /// The actions that scale the interface.
 const SIZES: [Action; 3] = [Action::LargerText, Action::SmallerText, Action::NormalText];
 
-/// Shows the panel; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     MenuBar::new().ui(ui, |ui| {
         ui.spacing_mut().button_padding.x = 8.0;
         menu(ui, "File", |ui| {
@@ -139,7 +137,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 const SEARCH: f32 = 170.0;
 
 /// Shows a button that opens the palette and looks like its search field.
-fn search_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn search_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let action = Action::Palette;
     let (rect, response) = ui.allocate_exact_size(vec2(SEARCH, theme::ROW), Sense::click());
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, action.info().label));
@@ -149,7 +147,7 @@ fn search_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let line = Stroke::new(1.0, if hovered { weak } else { theme::line(visuals) });
     ui.painter().rect(rect.shrink(0.5), 4.0, field, line, StrokeKind::Inside);
     let icon = Rect::from_min_size(rect.min, vec2(theme::ROW, rect.height()));
-    Icon::Search.paint(ui.painter(), icon, 12.0, weak);
+    Icon::SEARCH.paint(ui.painter(), icon, 12.0, weak);
     let key = first_key(ui, action).unwrap_or_default();
     let end = pos2(rect.right() - theme::GAP, rect.center().y);
     let right = controls::key_cap(ui, end, &key, true) - theme::GAP;
@@ -184,14 +182,14 @@ fn submenu(ui: &mut Ui, name: &str, add: impl FnOnce(&mut Ui)) {
     shown.response.widget_info(|| WidgetInfo::labeled(Role::MenuItem, true, name));
 }
 
-fn group_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, group: Group) {
+fn group_ui(ui: &mut Ui, state: &State, requests: &mut Requests, group: Group) {
     items(ui, state, requests, group.actions());
 }
 
 fn items(
     ui: &mut Ui,
     state: &State,
-    requests: &mut Vec<Request>,
+    requests: &mut Requests,
     actions: impl IntoIterator<Item = Action>,
 ) {
     for (i, action) in actions.into_iter().enumerate() {
@@ -203,7 +201,7 @@ fn items(
 }
 
 /// Lists the built-in scenes; a click opens one in place of this scene.
-fn examples_ui(ui: &mut Ui, requests: &mut Vec<Request>) {
+fn examples_ui(ui: &mut Ui, requests: &mut Requests) {
     for example in EXAMPLES {
         let response = ui.button(example.title);
         response.widget_info(|| WidgetInfo::labeled(Role::MenuItem, true, example.title));
@@ -215,7 +213,7 @@ fn examples_ui(ui: &mut Ui, requests: &mut Vec<Request>) {
 }
 
 /// Lists the files opened or saved last; a click loads a model or opens a scene.
-fn recent_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn recent_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     if state.recent.is_empty() {
         ui.weak("No files yet");
     }
@@ -231,7 +229,7 @@ fn recent_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 }
 
 /// Lists the lessons; a click shows one in its scene.
-fn lessons_ui(ui: &mut Ui, requests: &mut Vec<Request>) {
+fn lessons_ui(ui: &mut Ui, requests: &mut Requests) {
     for lesson in lessons() {
         let response = ui.button(&lesson.title);
         response.widget_info(|| WidgetInfo::labeled(Role::MenuItem, true, &lesson.title));

@@ -33,7 +33,7 @@ use crate::app::chord::Chord::{Command, Either, Named, Text};
 use marraztu_io as io;
 
 /// The place of a panel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Dock {
     /// At a side of the picture; in a narrow window, one at a time.
     Beside(Side),
@@ -47,7 +47,6 @@ pub enum Dock {
 
 impl Dock {
     /// Returns the side of the picture, if the panel is at one.
-    #[must_use]
     pub const fn side(self) -> Option<Side> {
         match self {
             Self::Beside(side) => Some(side),
@@ -57,7 +56,7 @@ impl Dock {
 }
 
 /// A place at a side of the picture.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Side {
     /// At the left: the list of objects, cameras and lights.
     Outline,
@@ -144,7 +143,6 @@ macro_rules! table {
             pub const ALL: &'static [Self] = &[$(Self::$panel),+];
 
             /// Returns the appearance of the panel.
-            #[must_use]
             pub const fn info(self) -> PanelInfo {
                 match self {
                     $(Self::$panel => PanelInfo {
@@ -186,7 +184,6 @@ impl OpenPanels {
     };
 
     /// Returns whether a panel is open.
-    #[must_use]
     pub const fn has(self, panel: Panel) -> bool {
         self.0[panel as usize]
     }
@@ -214,13 +211,11 @@ impl OpenPanels {
     }
 
     /// Converts the set to the form in files.
-    #[must_use]
     pub fn kept(self) -> io::Panels {
         Panel::ALL.iter().map(|panel| (panel.info().name, self.has(*panel))).collect()
     }
 
     /// Reads the set from a file. Panels that the file does not mention are as at the first start.
-    #[must_use]
     pub fn of_kept(kept: &io::Panels) -> Self {
         let is_open = |panel: &Panel| kept.is_open(panel.info().name);
         Panel::ALL.iter().fold(Self::DEFAULT, |panels, panel| match is_open(panel) {

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use egui::{Align2, Area, Context, Frame, Id, Order, Rect, Ui, vec2};
 
-use crate::app::actions::{Action, MissingRequest, Request};
+use crate::app::actions::{Action, MissingRequest, Request, Requests};
 use crate::app::documents::loading::Loading;
 use crate::app::input::buttons::first_key;
 use crate::app::state::{Notice, Offer, State};
@@ -28,7 +28,7 @@ pub(crate) fn show<T>(
     state: &State,
     loading: &[Loading],
     making: &[Task<T>],
-    requests: &mut Vec<Request>,
+    requests: &mut Requests,
 ) {
     let missing = match state.missing.dismissed {
         true => BTreeSet::new(),
@@ -88,7 +88,7 @@ fn seen_id() -> Id {
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "a fraction from 0 to 1")]
-fn task_ui<T>(ui: &mut Ui, task: &Task<T>, cancel: Request, requests: &mut Vec<Request>) {
+fn task_ui<T>(ui: &mut Ui, task: &Task<T>, cancel: Request, requests: &mut Requests) {
     ui.label(&task.label);
     ui.horizontal(|ui| {
         let fraction = task.progress.fraction() as f32;
@@ -102,7 +102,7 @@ fn task_ui<T>(ui: &mut Ui, task: &Task<T>, cancel: Request, requests: &mut Vec<R
 }
 
 /// Shows unsaved work that a crashed program has left behind.
-fn recoverable_ui(ui: &mut Ui, at: usize, work: &str, requests: &mut Vec<Request>) {
+fn recoverable_ui(ui: &mut Ui, at: usize, work: &str, requests: &mut Requests) {
     ui.label(work);
     ui.horizontal(|ui| {
         let key = first_key(ui, Action::RecoverWork).filter(|_| at == 0);
@@ -122,7 +122,7 @@ fn recoverable_ui(ui: &mut Ui, at: usize, work: &str, requests: &mut Vec<Request
 }
 
 /// Reports the missing files of the scene.
-fn missing_ui(ui: &mut Ui, missing: &BTreeSet<&Path>, requests: &mut Vec<Request>) {
+fn missing_ui(ui: &mut Ui, missing: &BTreeSet<&Path>, requests: &mut Requests) {
     let names: Vec<String> = missing.iter().map(|path| file_name(path)).collect();
     let text = match &names[..] {
         [only] => format!("{only} is missing: a placeholder is shown"),
@@ -143,7 +143,7 @@ fn missing_ui(ui: &mut Ui, missing: &BTreeSet<&Path>, requests: &mut Vec<Request
 }
 
 /// Offers missing files in the folder of a found one.
-fn nearby_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn nearby_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let found: Vec<String> =
         state.missing.nearby.iter().map(|[_, new]| new.display().to_string()).collect();
     let text = match &state.missing.nearby[..] {
@@ -161,7 +161,7 @@ fn nearby_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     });
 }
 
-fn notice_ui(ui: &mut Ui, at: usize, notice: &Notice, state: &State, requests: &mut Vec<Request>) {
+fn notice_ui(ui: &mut Ui, at: usize, notice: &Notice, state: &State, requests: &mut Requests) {
     ui.label(&notice.text);
     let buttons = ui.horizontal(|ui| {
         let mut focused = false;
@@ -191,7 +191,6 @@ fn notice_ui(ui: &mut Ui, at: usize, notice: &Notice, state: &State, requests: &
     }
 }
 
-/// Returns the request that accepts an offer.
 fn accepted(offer: Offer, state: &State) -> Option<Request> {
     let gesture = Gesture::Whole;
     match offer.command(&state.scene, &state.view) {
@@ -206,7 +205,7 @@ fn accepted(offer: Offer, state: &State) -> Option<Request> {
 
 /// Moves a notice to the status line after some seconds. The notice stays while the pointer is over
 /// it or it has the focus.
-fn settle(ui: &Ui, at: usize, focused: bool, requests: &mut Vec<Request>) {
+fn settle(ui: &Ui, at: usize, focused: bool, requests: &mut Requests) {
     let id = ui.scope_id().with("since");
     let (now, pointer) = ui.input(|input| (input.time, input.pointer.hover_pos()));
     let pass = ui.ctx().cumulative_pass_nr();
@@ -230,7 +229,7 @@ fn settle(ui: &Ui, at: usize, focused: bool, requests: &mut Vec<Request>) {
 }
 
 /// Shows the choice of the up axis of an opened model, between the two usual ones.
-fn up_axis_ui(ui: &mut Ui, state: &State, id: ObjectId, requests: &mut Vec<Request>) {
+fn up_axis_ui(ui: &mut Ui, state: &State, id: ObjectId, requests: &mut Requests) {
     let Some(object) = state.scene.objects.get(id) else { return };
     let now = object.model.options.up;
     for up in [UpAxis::Y, UpAxis::Z] {

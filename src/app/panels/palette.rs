@@ -8,7 +8,7 @@ use egui::{
 };
 
 use crate::app::actions::search::{Search, Texts};
-use crate::app::actions::{Action, LabRequest, Request};
+use crate::app::actions::{Action, LabRequest, Request, Requests};
 use crate::app::input::keyboard::Keyboard;
 use crate::app::input::keymap::Keymap;
 use crate::app::state::State;
@@ -17,7 +17,7 @@ use crate::app::widgets::color_picker::hexadecimal;
 use crate::app::widgets::controls;
 use marraztu_core::accuracy::{ACCURACY_PRESETS, AXES, AccuracyPreset};
 use marraztu_core::base::color::Color;
-use marraztu_core::edit::{Gesture, items, several};
+use marraztu_core::edit::{Gesture, Refusal, items, several};
 use marraztu_core::scene::{Command, ItemId, Material, MaterialChoice, Object, ObjectId, PresetId};
 use marraztu_io::{EXAMPLES, lessons};
 
@@ -43,8 +43,7 @@ struct Entry {
 /// The height of an entry.
 const ENTRY: f32 = theme::ROW + 2.0;
 
-/// Shows the palette; its requests are added to `requests`.
-pub(crate) fn show(ui: &Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &Ui, state: &State, requests: &mut Requests) {
     let id = Id::unique("palette");
     let room = ui.ctx().content_rect().size();
     let width = WIDTH.min(room.x - 40.0);
@@ -79,7 +78,7 @@ fn forget(ui: &Ui) {
 }
 
 /// Shows the field and the list. Returns whether an entry was chosen.
-fn contents(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, height: f32) -> bool {
+fn contents(ui: &mut Ui, state: &State, requests: &mut Requests, height: f32) -> bool {
     let id = query_id();
     let first = ui.data(|data| data.get_temp::<String>(id)).is_none();
     let mut query: String = ui.data(|data| data.get_temp(id)).unwrap_or_default();
@@ -149,7 +148,7 @@ fn found(keymap: &Keymap, state: &State, query: &str) -> Vec<Entry> {
     let mut entries = Vec::new();
     for action in Action::ALL.iter().copied().filter(|action| *action != Action::Palette) {
         let keys = keymap.keys(action);
-        let Some(score) = action.score_on(keys, &mut search, query) else { continue };
+        let Some(score) = action.score(keys, &mut search, query) else { continue };
         let info = action.info();
         entries.push(Entry {
             label: info.label.to_owned(),
@@ -231,17 +230,14 @@ fn materials(state: &State, search: &mut Search, entries: &mut Vec<Entry>) {
     }
 }
 
-/// Creates a change of the selected objects.
 fn of_objects(state: &State, id: ObjectId, label: String, change: impl Fn(&mut Object)) -> Request {
-    let (scene, others) = (&state.scene, state.others());
-    match items::change_object(scene, id, change) {
-        Ok(command) => Request::Change {
-            command: several::spread(scene, command, &others),
-            gesture: Gesture::Whole,
-            label,
-        },
-        Err(refusal) => Request::Refuse(refusal.to_string()),
-    }
+    of_selected(state, label, items::change_object(&state.scene, id, change))
+}
+
+/// Extends a change to all selected items.
+fn of_selected(state: &State, label: String, command: Result<Command, Refusal>) -> Request {
+    let spread = |command| several::spread(&state.scene, command, &state.others());
+    Request::change(label, Gesture::Whole, command.map(spread))
 }
 
 /// Adds everything that can get a colour, written as `#ff8000` or by its name.
@@ -275,21 +271,13 @@ fn colors(
         Some(ItemId::Light(id)) => {
             let what = format!("Colour of {name}");
             let command = items::change_light(&state.scene, id, |light| light.color = color);
-            let request = match command {
-                Ok(command) => Request::Change {
-                    command: several::spread(&state.scene, command, &state.others()),
-                    gesture: Gesture::Whole,
-                    label: what.clone(),
-                },
-                Err(refusal) => Request::Refuse(refusal.to_string()),
-            };
+            let request = of_selected(state, what.clone(), command);
             add(what, "Sets the light to this colour.", request);
         }
         Some(ItemId::Camera(_)) | None => {}
     }
-    let command = Command::Background(color);
-    let (gesture, label) = (Gesture::Whole, "Set the background".to_owned());
-    let request = Request::Change { command, gesture, label };
+    let command = Ok(Command::Background(color));
+    let request = Request::change("Set the background", Gesture::Whole, command);
     add("Background".to_owned(), "Sets the background to this colour.", request);
 }
 

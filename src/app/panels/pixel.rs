@@ -7,7 +7,7 @@ use egui::{
 };
 use glam::DVec3;
 
-use crate::app::actions::Request;
+use crate::app::actions::{Request, Requests};
 use crate::app::state::{ExplainedPixel, State};
 use crate::app::theme;
 use crate::app::widgets::controls::{self, icon_button};
@@ -28,8 +28,7 @@ const BUTTONS: f32 = 76.0;
 /// The height of the axes of the world above the window.
 const AXES: f32 = 90.0;
 
-/// Shows the window; its requests are added to `requests`.
-pub(crate) fn show(ctx: &Context, state: &State, picture: Rect, requests: &mut Vec<Request>) {
+pub(crate) fn show(ctx: &Context, state: &State, picture: Rect, requests: &mut Requests) {
     let Some(pixel) = &state.explained else { return };
     let mut open = true;
     let [x, y] = pixel.at;
@@ -66,7 +65,7 @@ fn explained_ui(ui: &mut Ui, state: &State, pixel: &ExplainedPixel, explained: &
     if explained.linear {
         ui.weak("Linear light: encoded in sRGB before it is rounded.");
     }
-    let samples = state.refined_to().unwrap_or(pixel.settings.samples);
+    let samples = state.refined_to().unwrap_or(pixel.shot.settings.samples);
     if samples.count() > 1 {
         let count = samples.count();
         ui.weak(format!(
@@ -78,7 +77,7 @@ fn explained_ui(ui: &mut Ui, state: &State, pixel: &ExplainedPixel, explained: &
         diagram_ui(ui, pixel, point, explained);
         ui.separator();
         Grid::new("facts").num_columns(2).spacing(vec2(10.0, 2.0)).show(ui, |ui| {
-            for [name, value] in pixel::facts(&pixel.scene, point) {
+            for [name, value] in pixel::facts(&pixel.shot.scene, point) {
                 ui.weak(name);
                 ui.add(Label::new(mono(value)).wrap());
                 ui.end_row();
@@ -92,20 +91,20 @@ fn buttons_ui(
     state: &State,
     pixel: &ExplainedPixel,
     explained: &PixelColor,
-    requests: &mut Vec<Request>,
+    requests: &mut Requests,
 ) {
     ui.horizontal(|ui| {
         if ui.button("Copy as text").clicked() {
-            ui.ctx().copy_text(pixel::lines(&pixel.scene, explained).join("\n"));
+            ui.ctx().copy_text(pixel::lines(&pixel.shot.scene, explained).join("\n"));
         }
         if ui.selectable_label(state.explaining, "Another pixel").clicked() {
             requests.push(Request::Do(crate::app::actions::Action::ExplainPixel));
         }
         for (icon, name, by) in [
-            (Icon::Left, "The pixel to the left", [-1, 0]),
-            (Icon::Right, "The pixel to the right", [1, 0]),
-            (Icon::Up, "The pixel above", [0, -1]),
-            (Icon::Down, "The pixel below", [0, 1]),
+            (Icon::LEFT, "The pixel to the left", [-1, 0]),
+            (Icon::RIGHT, "The pixel to the right", [1, 0]),
+            (Icon::UP, "The pixel above", [0, -1]),
+            (Icon::DOWN, "The pixel below", [0, 1]),
         ] {
             let next = |at: usize, by: isize| at.checked_add_signed(by);
             let response = icon_button(ui, icon, name, true).on_hover_text(name);
@@ -133,7 +132,7 @@ fn sum_ui(ui: &mut Ui, pixel: &ExplainedPixel, explained: &PixelColor) {
     let strong = ui.visuals().strong_text_color();
     let plain = ui.visuals().text_color();
     term_ui(ui, "in steps of a byte", ["red", "green", "blue"].map(str::to_owned), weak);
-    for term in pixel::rows(&pixel.scene, explained) {
+    for term in pixel::rows(&pixel.shot.scene, explained) {
         let color = if term.value == [0.0; 3] { weak } else { plain };
         term_ui(ui, &term.label, term.value.map(number), color);
     }
@@ -160,9 +159,7 @@ fn term_ui(ui: &mut Ui, label: &str, values: [String; 3], color: Color32) {
             let size = vec2(NUMBER, theme::ROW - 4.0);
             let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
             response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &value));
-            let text = controls::text(ui, value.as_str(), TextStyle::Monospace, NUMBER);
-            let left = rect.right() - text.size().x;
-            controls::put_text(ui, rect.with_min_x(left), text, color);
+            controls::right_text(ui, rect, &value, TextStyle::Monospace, color);
         }
     });
 }
@@ -203,7 +200,7 @@ fn diagram_ui(ui: &mut Ui, pixel: &ExplainedPixel, point: &SurfacePoint, explain
     let words = ray.map_or_else(
         || "No light reaches the front of the surface here.".to_owned(),
         |(id, ray)| {
-            let name = pixel::light_name(&pixel.scene, id);
+            let name = pixel::light_name(&pixel.shot.scene, id);
             format!("L and R of {name}: {}", pixel::ray_line(&ray))
         },
     );

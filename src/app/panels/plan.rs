@@ -10,7 +10,7 @@ use egui::{
     Align2, Color32, Id, Rect, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2,
 };
 
-use crate::app::actions::{Action, Request};
+use crate::app::actions::{Action, Requests};
 use crate::app::state::{Measured, State};
 use crate::app::theme;
 use crate::app::widgets::controls;
@@ -20,8 +20,7 @@ use crate::app::widgets::text::grouped;
 use marraztu_lab::cost::{Explained, Group};
 use marraztu_render::{Effect, EffectUse};
 
-/// Shows the panel; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let Some(explained) = state.plan.explained.clone() else {
         ui.add(egui::Label::new("The plan appears with the next picture.").wrap());
         return;
@@ -40,7 +39,7 @@ const LEAST: f32 = 400.0;
 const ROOMY: f32 = 540.0;
 
 /// Shows the summary and the Measure button.
-fn header_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, explained: &Explained) {
+fn header_ui(ui: &mut Ui, state: &State, requests: &mut Requests, explained: &Explained) {
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
         let title = ui.label(RichText::new("Plan").strong());
@@ -89,9 +88,7 @@ fn summary(explained: &Explained) -> String {
 
 /// Returns whether the measurement belongs to the picture in the viewport.
 fn is_of_now(measured: &Measured, state: &State) -> bool {
-    measured.settings == state.settings
-        && measured.view == state.view
-        && measured.scene == state.scene
+    measured.of == state.shot(measured.of.size)
 }
 
 /// The rectangles of the columns in a row.
@@ -257,7 +254,7 @@ impl Row<'_> {
         let middle = rect.center().y;
         let mark = columns.name.left() + 12.0;
         if let Some(is_open) = self.chevron {
-            let icon = if is_open { Icon::Down } else { Icon::Right };
+            let icon = if is_open { Icon::DOWN } else { Icon::RIGHT };
             let at =
                 Rect::from_center_size(pos2(columns.name.left() + 4.0, middle), vec2(8.0, 8.0));
             icon.paint(ui.painter(), at, 8.0, color);
@@ -267,12 +264,8 @@ impl Row<'_> {
         disk_ui(ui, pos2(disk, middle), self.on);
         let put = |rect: Rect, left: f32, text: &str, color: Color32| {
             let rect = rect.with_min_x(left);
-            controls::put_text(
-                ui,
-                rect,
-                controls::text(ui, text, TextStyle::Body, rect.width()),
-                color,
-            );
+            let text = controls::text(ui, text, TextStyle::Body, rect.width());
+            controls::put_text(ui, rect, text, color);
         };
         put(columns.name, mark + 16.0, self.name, color);
         put(columns.on, columns.on.left() + self.indent, self.things, color);

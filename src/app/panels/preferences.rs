@@ -3,16 +3,15 @@
 //! A row changes a copy of [`Preferences`]. The app applies the changed copy in the same way as the
 //! file at the start, so one request serves all rows.
 
-use egui::{
-    Align, DragValue, Layout, ScrollArea, Sense, TextStyle, ThemePreference, Ui, Window, vec2,
-};
+use egui::{Align, DragValue, Layout, ScrollArea, Sense, TextStyle, ThemePreference, Ui, vec2};
 
-use crate::app::actions::{Action, Request};
+use super::arrange::window;
+use crate::app::actions::{Action, Request, Requests};
 use crate::app::input::keyboard::Keyboard;
 use crate::app::panels::{OpenPanels, Panel};
 use crate::app::state::State;
 use crate::app::theme;
-use crate::app::widgets::controls::{self, Choice, Switch, icon_button};
+use crate::app::widgets::controls::{self, Switch, choose, icon_button};
 use crate::app::widgets::icons::Icon;
 use marraztu_core::accuracy::Samples;
 use marraztu_core::scene::UpAxis;
@@ -20,10 +19,7 @@ use marraztu_io::{Preferences, Theme};
 
 const SIZE: egui::Vec2 = vec2(480.0, 470.0);
 
-/// The width of the labels.
 const LABEL: f32 = 150.0;
-
-type Requests = Vec<Request>;
 
 /// A remembered value.
 struct Row {
@@ -41,7 +37,8 @@ const ROWS: &[Row] = &[
         hint: "Whether the window is light or dark.",
         ui: |ui, it, _| {
             let all = [("System", Theme::System), ("Light", Theme::Light), ("Dark", Theme::Dark)];
-            choose(ui, ("Theme", "Light, dark, or like the system"), &all, &mut it.theme);
+            let all = all.map(|(label, to)| (label, to, "Light, dark, or like the system"));
+            it.theme = choose(ui, "Theme", it.theme, &all).unwrap_or(it.theme);
         },
         copy: |from, to| to.theme = from.theme,
     },
@@ -123,11 +120,9 @@ const ROWS: &[Row] = &[
         label: "Up axis of models",
         hint: "The up axis of models that do not state one.",
         ui: |ui, it, _| {
-            let words = UpAxis::ALL.map(|up| up.word().to_uppercase());
-            let named = UpAxis::ALL.into_iter().zip(&words);
-            let all: Vec<(&str, UpAxis)> = named.map(|(up, word)| (word.as_str(), up)).collect();
             let hint = "The axis of the file that points up";
-            choose(ui, ("Up axis", hint), &all, &mut it.up);
+            let all = UpAxis::ALL.map(|up| (up.word().to_uppercase(), up, hint));
+            it.up = choose(ui, "Up axis", it.up, &all).unwrap_or(it.up);
         },
         copy: |from, to| to.up = from.up,
     },
@@ -183,12 +178,9 @@ const ROWS: &[Row] = &[
         label: "Samples when refined",
         hint: "The samples per pixel that the picture is refined to.",
         ui: |ui, it, _| {
-            let counts = Samples::ALL.map(|samples| samples.count().to_string());
-            let named = Samples::ALL.into_iter().zip(&counts);
-            let all: Vec<(&str, Samples)> =
-                named.map(|(samples, count)| (count.as_str(), samples)).collect();
             let hint = "More samples smooth edges, and take longer";
-            choose(ui, ("Samples when refined", hint), &all, &mut it.refined);
+            let all = Samples::ALL.map(|samples| (samples.count().to_string(), samples, hint));
+            it.refined = choose(ui, "Samples when refined", it.refined, &all).unwrap_or(it.refined);
         },
         copy: |from, to| to.refined = from.refined,
     },
@@ -206,19 +198,6 @@ const ROWS: &[Row] = &[
 
 fn switch(ui: &mut Ui, label: &str, on: &mut bool) {
     *on ^= Switch::new(label, *on).ui(ui).clicked();
-}
-
-fn choose<T: Copy + PartialEq>(
-    ui: &mut Ui,
-    (of, hint): (&str, &str),
-    all: &[(&str, T)],
-    now: &mut T,
-) {
-    let choices: Vec<Choice<'_>> =
-        all.iter().map(|(label, it)| Choice::new(of, label, it == now, hint)).collect();
-    if let Some(clicked) = controls::choices(ui, &choices) {
-        *now = all[clicked].1;
-    }
 }
 
 /// Returns the current preferences, with the last known size of the window.
@@ -258,21 +237,9 @@ pub(crate) fn now(ctx: &egui::Context, state: &State, before: Option<[f32; 2]>) 
     }
 }
 
-/// Shows the panel; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
-    let mut open = true;
-    let room = ui.ctx().content_rect().size() - vec2(80.0, 120.0);
-    let size = SIZE.min(room);
-    Window::new(Panel::Preferences.info().label)
-        .open(&mut open)
-        .collapsible(false)
-        .resizable(false)
-        .default_pos(ui.ctx().content_rect().center() - size / 2.0)
-        .fixed_size(size)
-        .show(ui.ctx(), |ui| contents(ui, state, requests));
-    if !open {
-        requests.push(Action::Panel(Panel::Preferences).into());
-    }
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
+    let add = |ui: &mut Ui, requests: &mut Requests| contents(ui, state, requests);
+    window(ui, Panel::Preferences, SIZE, requests, add);
 }
 
 fn contents(ui: &mut Ui, state: &State, requests: &mut Requests) {
@@ -319,7 +286,7 @@ impl Row {
             });
             let name = format!("Reset: {}", self.label);
             let is_changed = reset != *now;
-            let button = icon_button(ui, Icon::Undo, &name, is_changed).on_hover_text(&name);
+            let button = icon_button(ui, Icon::UNDO, &name, is_changed).on_hover_text(&name);
             if is_changed && button.clicked() {
                 *now = reset;
             }

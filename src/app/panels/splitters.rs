@@ -2,7 +2,7 @@
 
 use egui::{CursorIcon, Id, Rect, Sense, Stroke, Ui, UiBuilder, WidgetInfo, vec2};
 
-use crate::app::actions::{Action, Request};
+use crate::app::actions::{Action, Request, Requests};
 use crate::app::input::buttons::action_icon;
 use crate::app::panels::{Panel, Side};
 use crate::app::state::State;
@@ -14,13 +14,7 @@ use crate::app::widgets::icons::Icon;
 const GRIP: f32 = 7.0;
 
 /// Shows all splitters over the panels; their requests are added to `requests`.
-pub(crate) fn show(
-    ui: &Ui,
-    state: &State,
-    area: Rect,
-    places: &Places,
-    requests: &mut Vec<Request>,
-) {
+pub(crate) fn show(ui: &Ui, state: &State, area: Rect, places: &Places, requests: &mut Requests) {
     for splitter in Splitter::ALL {
         let (Some(line), Some(grip)) = (places.grip(splitter, 0.0), places.grip(splitter, GRIP))
         else {
@@ -61,13 +55,13 @@ pub(crate) fn show(
 }
 
 /// Shows the buttons that unfold panels.
-pub(crate) fn strip_ui(ui: &mut Ui, rect: Rect, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn strip_ui(ui: &mut Ui, rect: Rect, state: &State, requests: &mut Requests) {
     let inner = rect.shrink2(vec2((rect.width() - theme::ROW) / 2.0, theme::GAP));
     let mut child = ui.new_child(UiBuilder::new().id_salt("strip").max_rect(inner));
     for (side, icon, panel) in [
-        (Side::Outline, Icon::List, Panel::Outline),
-        (Side::Switches, Icon::Switches, Panel::View),
-        (Side::Properties, Icon::Properties, Panel::Properties),
+        (Side::Outline, Icon::LIST, Panel::Outline),
+        (Side::Switches, Icon::SWITCHES, Panel::View),
+        (Side::Properties, Icon::PROPERTIES, Panel::Properties),
     ] {
         if state.layout.unfolded == Some(side) {
             let row = vec2(theme::ROW, theme::ROW);

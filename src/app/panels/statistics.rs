@@ -2,7 +2,7 @@
 
 use egui::{Align2, Ui};
 
-use crate::app::actions::Request;
+use crate::app::actions::Requests;
 use crate::app::state::{Shrink, State};
 use crate::app::widgets::plate::plate_ui;
 use crate::app::widgets::text::grouped;
@@ -10,7 +10,7 @@ use marraztu_core::scene::ItemId;
 use marraztu_render::{Change, Damage, DamageCause};
 
 /// Shows the panel in a corner of the picture; it makes no requests.
-pub(crate) fn show(ui: &mut Ui, state: &State, _: &mut Vec<Request>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, _: &mut Requests) {
     let statistics = &state.statistics;
     let shown = || state.scene.objects.iter().filter(|(_, object)| object.visible);
     let sum = |count: fn(&marraztu_core::scene::Mesh) -> usize| {

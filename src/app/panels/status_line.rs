@@ -9,7 +9,8 @@ use egui::{
     WidgetInfo, vec2,
 };
 
-use crate::app::actions::Request;
+use super::outline::place;
+use crate::app::actions::{Request, Requests};
 use crate::app::state::{Message, Reduction, State, Tone};
 use crate::app::theme;
 use crate::app::widgets::controls;
@@ -26,8 +27,7 @@ const BETWEEN: &str = "  |  ";
 /// Longer names are elided in the middle.
 const LONGEST_NAME: usize = 28;
 
-/// Shows the panel; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     ui.horizontal(|ui| {
         ui.set_min_height(theme::ROW);
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
@@ -51,7 +51,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 }
 
 /// Shows a button that lists past notices with their details.
-fn past_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn past_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let name = match state.past_notices.len() {
         1 => "1 notice".to_owned(),
         count => format!("{count} notices"),
@@ -60,7 +60,7 @@ fn past_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     let galley = controls::text(ui, &name, TextStyle::Body, f32::INFINITY);
     let size = vec2(galley.size().x + theme::ROW, theme::ROW);
     let (rect, response) = ui.allocate_exact_size(size, Sense::click());
-    Icon::Info.paint(ui.painter(), rect.with_max_x(rect.left() + 16.0), 12.0, color);
+    Icon::INFO.paint(ui.painter(), rect.with_max_x(rect.left() + 16.0), 12.0, color);
     controls::put_text(ui, rect.with_min_x(rect.left() + 20.0), galley, color);
     response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &name));
     controls::focus_ring(ui, rect, &response);
@@ -134,8 +134,8 @@ const TIME: &str = "The time to draw the last picture, from the scene to pixels 
 
 fn message_ui(ui: &mut Ui, message: &Message, room: f32) {
     let (icon, color) = match message.tone {
-        Tone::Done => (Icon::Tick, ui.visuals().weak_text_color()),
-        Tone::Refused => (Icon::Warning, theme::error(ui.visuals())),
+        Tone::Done => (Icon::TICK, ui.visuals().weak_text_color()),
+        Tone::Refused => (Icon::WARNING, theme::error(ui.visuals())),
     };
     let text = RichText::new(&message.text).color(color);
     let galley = controls::text(ui, text, TextStyle::Body, room - theme::ROW);
@@ -225,31 +225,17 @@ fn drawn(state: &State) -> Vec<String> {
 }
 
 fn selected(state: &State) -> String {
-    let (scene, view) = (&state.scene, &state.view);
-    let (kind, place, count, name) = match view.subject {
-        Subject::Object => {
-            let id = view.object.filter(|id| scene.objects.get(*id).is_some());
-            let place = id.and_then(|id| scene.objects.iter().position(|(other, _)| other == id));
-            let name = id.and_then(|id| scene.objects.get(id)).map(|object| &object.name);
-            ("Object", place, scene.objects.len(), name)
-        }
-        Subject::Camera => {
-            let place = scene.cameras.iter().position(|(other, _)| other == view.camera);
-            let name = scene.cameras.get(view.camera).map(|camera| &camera.name);
-            ("Camera", place, scene.cameras.len(), name)
-        }
-        Subject::Light => {
-            let id = view.light;
-            let place = id.and_then(|id| scene.lights.iter().position(|(other, _)| other == id));
-            let name = id.and_then(|id| scene.lights.get(id)).map(|light| &light.name);
-            ("Light", place, scene.lights.len(), name)
-        }
+    let kind = match state.view.subject {
+        Subject::Object => "Object",
+        Subject::Camera => "Camera",
+        Subject::Light => "Light",
     };
-    match (place, name) {
-        (Some(place), Some(name)) => {
+    let item = state.selected().and_then(|item| Some((place(state, item)?, state.name(item)?)));
+    match item {
+        Some(((place, count), name)) => {
             format!("{kind} {}/{count} {}", place + 1, middle_elided(name, LONGEST_NAME))
         }
-        _ => format!("No {}", kind.to_lowercase()),
+        None => format!("No {}", kind.to_lowercase()),
     }
 }
 
@@ -307,19 +293,13 @@ fn step(state: &State) -> Option<String> {
 
 /// Joins the parts. If they do not fit, dots replace parts in the middle.
 fn fitted(parts: &[String], fits: impl Fn(&str) -> bool) -> String {
-    let whole = parts.join(BETWEEN);
     // The first part and the last ones are the most important.
     for left_out in 0..parts.len().saturating_sub(1) {
-        if left_out == 0 {
-            if fits(&whole) {
-                return whole;
-            }
-            continue;
-        }
         let first = (parts.len() - left_out).div_ceil(2);
-        let mut kept: Vec<&str> = parts[..first].iter().map(String::as_str).collect();
-        kept.push("...");
-        kept.extend(parts[first + left_out..].iter().map(String::as_str));
+        let mut kept = parts.to_vec();
+        if left_out > 0 {
+            kept.splice(first..first + left_out, ["...".to_owned()]);
+        }
         let text = kept.join(BETWEEN);
         if fits(&text) {
             return text;

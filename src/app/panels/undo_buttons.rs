@@ -11,7 +11,7 @@ use egui::{
     TextStyle, Ui, WidgetInfo, vec2,
 };
 
-use crate::app::actions::{Action, Request};
+use crate::app::actions::{Action, Request, Requests};
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::controls::{focus_ring, icon_at, put_text, text};
@@ -23,7 +23,6 @@ const HOLD: f64 = 0.35;
 /// The number of visible steps; the others are scrolled to.
 const ROWS: f32 = 14.0;
 
-/// The width of the list.
 const WIDTH: f32 = 240.0;
 
 /// A step of the list: its index in the history, and the position of the history after undoing or
@@ -31,20 +30,20 @@ const WIDTH: f32 = 240.0;
 type Step = (usize, usize);
 
 /// Shows both buttons; their requests are added to `requests`.
-pub(super) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(super) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let history = &state.history;
     let here = history.position();
     let done = (0..here).rev().map(|at| (at, at));
     let undone = (here..history.steps().len()).map(|at| (at, at + 1));
-    button_ui(ui, state, requests, (Action::Undo, Icon::Undo), done);
-    button_ui(ui, state, requests, (Action::Redo, Icon::Redo), undone);
+    button_ui(ui, state, requests, (Action::Undo, Icon::UNDO), done);
+    button_ui(ui, state, requests, (Action::Redo, Icon::REDO), undone);
 }
 
 /// Shows a button with its steps, the nearest first.
 fn button_ui(
     ui: &mut Ui,
     state: &State,
-    requests: &mut Vec<Request>,
+    requests: &mut Requests,
     (action, icon): (Action, Icon),
     steps: impl ExactSizeIterator<Item = Step>,
 ) {

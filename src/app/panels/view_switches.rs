@@ -2,21 +2,20 @@
 
 use egui::{Id, ScrollArea, Sense, StrokeKind, TextStyle, Ui, WidgetInfo, vec2};
 
-use crate::app::actions::{Action, Group, Request, change, change_view};
+use crate::app::actions::{Action, Group, Request, Requests, change, change_view};
 use crate::app::input::buttons::{action_choice, action_switch};
 use crate::app::state::{DrawingChoices, State};
 use crate::app::theme;
 use crate::app::widgets::color_picker::swatch;
-use crate::app::widgets::controls::{self, Choice, choices, choices_in_rows, row, section};
+use crate::app::widgets::controls::{
+    self, Choice, choices, choices_in_rows, choose_in_rows, row, section,
+};
 use crate::app::widgets::number::Number;
 use crate::app::widgets::regions;
 use marraztu_core::accuracy::{ACCURACY_PRESETS, AXES, AccuracyPreset, Axis, Samples};
-use marraztu_core::scene::{
-    CameraMode, Command, Frame, Normals, Observer, Projection, Subject, Transformation, View,
-};
+use marraztu_core::scene::{CameraMode, Command, Frame, Subject, View};
 
-/// Shows the panel; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let area = ScrollArea::vertical().id_salt("view switches").auto_shrink(false);
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
         section(ui, "Keys act on", true, |ui| {
@@ -25,9 +24,14 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             frame_ui(ui, state, requests);
         });
         section(ui, "View", true, |ui| {
-            observer_ui(ui, state, requests);
-            projection_ui(ui, state, requests);
-            normals_ui(ui, state, requests);
+            let (of, labels) = ("Observer", ["From camera", "From object"]);
+            either_ui(ui, state, requests, of, labels, Action::ToggleObserver);
+            let (of, labels) = ("Projection", ["Perspective", "Orthographic"]);
+            either_ui(ui, state, requests, of, labels, Action::ToggleProjection);
+            let (of, labels) = ("Normals", ["Vertex", "Face"]);
+            row(ui, of, |ui| {
+                either_ui(ui, state, requests, of, labels, Action::ToggleLightNormals);
+            });
             background_ui(ui, state, requests);
         });
         section(ui, "Display", true, |ui| {
@@ -66,7 +70,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 fn actions_ui(
     ui: &mut Ui,
     state: &State,
-    requests: &mut Vec<Request>,
+    requests: &mut Requests,
     of: &str,
     actions: &[(&str, bool, Action)],
 ) {
@@ -80,7 +84,7 @@ fn actions_ui(
 }
 
 /// Shows the subject of the keys. The key `c` changes it to the next one.
-pub(crate) fn subject_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn subject_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let subject = state.view.subject;
     let all = [
         ("Camera", Subject::Camera, Action::SubjectCamera),
@@ -104,18 +108,14 @@ pub(crate) fn subject_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>
     }
 }
 
-fn transformation_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
-    let now = state.view.transformation;
-    let all = [
-        ("Move", now == Transformation::Translation, Action::Translate),
-        ("Rotate", now == Transformation::Rotation, Action::Rotate),
-        ("Scale", now == Transformation::Scaling, Action::Scale),
-    ];
+fn transformation_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
+    let all = [("Move", Action::Translate), ("Rotate", Action::Rotate), ("Scale", Action::Scale)];
+    let all = all.map(|(label, action)| (label, action.is_on(state) == Some(true), action));
     actions_ui(ui, state, requests, "Transformation", &all);
 }
 
 /// Shows the mode of cameras, or the frame of an object's transformation.
-pub(crate) fn frame_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn frame_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let view = &state.view;
     let (of, [first, second], is_second) = match view.subject {
         Subject::Camera => {
@@ -131,25 +131,20 @@ pub(crate) fn frame_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) 
     actions_ui(ui, state, requests, of, &all);
 }
 
-fn observer_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
-    let object = state.view.observer == Observer::Object;
-    let all = [
-        ("From camera", !object, Action::ToggleObserver),
-        ("From object", object, Action::ToggleObserver),
-    ];
-    actions_ui(ui, state, requests, "Observer", &all);
+/// Shows the choice between the states of a switch, off and on.
+fn either_ui(
+    ui: &mut Ui,
+    state: &State,
+    requests: &mut Requests,
+    of: &str,
+    [off, on]: [&str; 2],
+    action: Action,
+) {
+    let is_on = action.is_on(state) == Some(true);
+    actions_ui(ui, state, requests, of, &[(off, !is_on, action), (on, is_on, action)]);
 }
 
-fn projection_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
-    let orthographic = state.view.projection == Projection::Orthographic;
-    let all = [
-        ("Perspective", !orthographic, Action::ToggleProjection),
-        ("Orthographic", orthographic, Action::ToggleProjection),
-    ];
-    actions_ui(ui, state, requests, "Projection", &all);
-}
-
-fn background_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn background_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     row(ui, "Background", |ui| {
         let color = state.scene.background;
         let changed = swatch(ui, "Background", "Colour of the background", color);
@@ -163,7 +158,7 @@ fn background_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 const EXPOSURE_WIDTH: f32 = 84.0;
 
 /// Shows the exposure, with a button that fits it to the picture.
-fn exposure_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn exposure_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     row(ui, "Exposure", |ui| {
         let most = View::MOST_EXPOSURE;
         let field = Number::new("Exposure", "Stops: each doubles all light")
@@ -178,7 +173,7 @@ fn exposure_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 }
 
 /// Shows the lights that have keys as a row of small switches.
-fn slots_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn slots_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
         let width = ((ui.available_width() - 9.0 * 2.0) / 10.0).floor();
@@ -204,7 +199,7 @@ struct Slot {
 fn slot_ui(
     ui: &mut Ui,
     state: &State,
-    requests: &mut Vec<Request>,
+    requests: &mut Requests,
     action: Action,
     slot: u32,
     place: Slot,
@@ -245,24 +240,13 @@ fn slot_ui(
     }
 }
 
-fn normals_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
-    let face = state.view.normals == Normals::Face;
-    let all =
-        [("Vertex", !face, Action::ToggleLightNormals), ("Face", face, Action::ToggleLightNormals)];
-    row(ui, "Normals", |ui| actions_ui(ui, state, requests, "Normals", &all));
-}
-
 /// Shows the accuracy presets and every axis of the table.
-fn settings_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn settings_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let now = state.settings;
-    let hints: Vec<String> = ACCURACY_PRESETS.iter().map(AccuracyPreset::in_words).collect();
-    let presets: Vec<Choice<'_>> = ACCURACY_PRESETS
-        .iter()
-        .zip(&hints)
-        .map(|(preset, hint)| Choice::new("Accuracy", preset.label, preset.of(&now) == now, hint))
-        .collect();
-    if let Some(clicked) = row(ui, "Accuracy", |ui| choices_in_rows(ui, &presets)) {
-        requests.push(Request::Settings(ACCURACY_PRESETS[clicked].of(&now)));
+    let preset = |preset: &AccuracyPreset| (preset.label, preset.of(&now), preset.in_words());
+    let all: Vec<_> = ACCURACY_PRESETS.iter().map(preset).collect();
+    if let Some(to) = row(ui, "Accuracy", |ui| choose_in_rows(ui, "Accuracy", now, &all)) {
+        requests.push(Request::Settings(to));
     }
     for (i, axis) in AXES.iter().filter(|axis| !is_of_light(axis)).enumerate() {
         // A second region splits the long list for the keyboard.
@@ -274,36 +258,25 @@ fn settings_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 }
 
 /// Shows the preferences for drawing: refinement, and the time budget while moving.
-fn drawing_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn drawing_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let now = state.drawing;
-    let label = |samples: &Samples| format!("{} samples", samples.count());
-    let labels: Vec<String> = Samples::ALL[1..].iter().map(label).collect();
     let hint = "The samples per pixel in the window while nothing moves. Files and the laboratory \
         keep the setting above.";
-    let off = Choice::new("Refined to", "Off", !now.refines, hint);
-    let on = Samples::ALL[1..].iter().zip(&labels).map(|(samples, label)| {
-        Choice::new("Refined to", label, now.refines && now.refined == *samples, hint)
-    });
-    let all: Vec<Choice<'_>> = std::iter::once(off).chain(on).collect();
-    match row(ui, "When still", |ui| choices_in_rows(ui, &all)) {
-        Some(0) => requests.push(Request::Drawing(DrawingChoices { refines: false, ..now })),
-        Some(clicked) => {
-            let refined = Samples::ALL[clicked];
-            requests.push(Request::Drawing(DrawingChoices { refines: true, refined, ..now }));
-        }
-        None => {}
+    let refined = Samples::ALL[1..]
+        .iter()
+        .map(|samples| (format!("{} samples", samples.count()), Some(*samples), hint));
+    let all: Vec<_> = std::iter::once(("Off".to_owned(), None, hint)).chain(refined).collect();
+    let to = now.refines.then_some(now.refined);
+    if let Some(to) = row(ui, "When still", |ui| choose_in_rows(ui, "Refined to", to, &all)) {
+        let (refines, refined) = (to.is_some(), to.unwrap_or(now.refined));
+        requests.push(Request::Drawing(DrawingChoices { refines, refined, ..now }));
     }
     let hint = "The time limit for a picture while something moves. If a picture takes longer, \
         the window draws the most exact quality that was within the limit when it was measured on \
         this scene.";
-    let labels = BUDGETS.map(|ms| format!("{ms} ms"));
-    let all: Vec<Choice<'_>> = BUDGETS
-        .iter()
-        .zip(&labels)
-        .map(|(ms, label)| Choice::new("Time while moving", label, now.budget_ms == *ms, hint))
-        .collect();
-    if let Some(clicked) = row(ui, "Moving", |ui| choices_in_rows(ui, &all)) {
-        let budget_ms = BUDGETS[clicked];
+    let all = BUDGETS.map(|ms| (format!("{ms} ms"), ms, hint));
+    let of = "Time while moving";
+    if let Some(budget_ms) = row(ui, "Moving", |ui| choose_in_rows(ui, of, now.budget_ms, &all)) {
         requests.push(Request::Drawing(DrawingChoices { budget_ms, ..now }));
     }
 }
@@ -317,7 +290,7 @@ fn is_of_light(axis: &Axis) -> bool {
 }
 
 /// Shows the choices of an axis of accuracy.
-pub(crate) fn axis_ui(ui: &mut Ui, axis: &Axis, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn axis_ui(ui: &mut Ui, axis: &Axis, state: &State, requests: &mut Requests) {
     let now = state.settings;
     let senseless = (axis.sense)(&state.scene, &state.view).err();
     let own = |choice: &marraztu_core::accuracy::Choice| {

@@ -138,19 +138,18 @@ impl CanvasShell {
     /// pictures are drawn elsewhere.
     pub fn job(&mut self, kind: JobKind) -> Option<Vec<u8>> {
         match kind {
-            JobKind::Measure => self.app.lab.take_job(),
+            JobKind::Measure => self.app.lab.elsewhere.take_job(),
             JobKind::Make => self.app.making.take_job(),
             JobKind::Compare => self.app.comparing.take_job(),
         }
     }
 
     /// Returns whether the result of a job of a kind is awaited. If not, the host may stop it.
-    #[must_use]
-    pub const fn awaits(&self, kind: JobKind) -> bool {
+    pub fn awaits(&self, kind: JobKind) -> bool {
         match kind {
-            JobKind::Measure => self.app.lab.measures_elsewhere(),
+            JobKind::Measure => self.app.lab.elsewhere.is_awaited(),
             JobKind::Make => self.app.making.is_elsewhere(),
-            JobKind::Compare => self.app.comparing.is_elsewhere(),
+            JobKind::Compare => self.app.comparing.is_awaited(),
         }
     }
 
@@ -167,9 +166,9 @@ impl CanvasShell {
     /// Takes the end of a job of a kind. Anything else means that the job has failed.
     pub fn done(&mut self, kind: JobKind, end: &[u8]) {
         match kind {
-            JobKind::Measure => self.app.lab.end_elsewhere(end),
+            JobKind::Measure => self.app.lab.elsewhere.end(end),
             JobKind::Make => self.app.making.end_elsewhere(end),
-            JobKind::Compare => self.app.comparing.end_elsewhere(end),
+            JobKind::Compare => self.app.comparing.end(end),
         }
         self.due.store(0, Ordering::Relaxed);
     }
@@ -214,26 +213,22 @@ impl CanvasShell {
     }
 
     /// Returns the zoom of the editor, which multiplies the scale.
-    #[must_use]
     pub fn zoom(&self) -> f32 {
         self.ctx.zoom_factor()
     }
 
     /// Returns the time until the next frame is due, or `None` if nothing will change by itself.
-    #[must_use]
     pub fn due(&self) -> Option<Duration> {
         let due = self.due.load(Ordering::Relaxed);
         (due != u64::MAX).then(|| Duration::from_millis(due))
     }
 
     /// Returns the pixels row by row: blue in the lowest byte, then green, red and a zero.
-    #[must_use]
     pub fn pixels(&self) -> &[u32] {
         &self.pixels
     }
 
     /// Returns the number of columns and rows.
-    #[must_use]
     pub const fn size(&self) -> [usize; 2] {
         self.size
     }

@@ -11,6 +11,6 @@ mod desktop;
 
 pub use canvas::{CanvasShell, Painted};
 #[cfg(feature = "desktop")]
-pub(crate) use desktop::{Editor, Parent, find_display, run};
-#[cfg(feature = "desktop")]
 pub use desktop::{Shell, StartError};
+#[cfg(feature = "desktop")]
+pub(crate) use desktop::{find_display, run};

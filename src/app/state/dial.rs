@@ -21,7 +21,6 @@ pub struct DialState {
 
 impl DialState {
     /// Returns the last figures.
-    #[must_use]
     pub fn figures(&self) -> &[Figures] {
         self.last.as_ref().map_or(&[], |last| &last.figures)
     }
@@ -29,7 +28,7 @@ impl DialState {
     /// Returns the last figures of settings. Choices of models do not matter.
     pub(crate) fn of(&self, settings: &Settings) -> Option<Figures> {
         let last = self.last.as_ref()?;
-        let settings = last.of.at_rest(&settings.modelled_as(&last.of.models));
+        let settings = last.of.at_rest(&settings.modelled_as(&last.of.shot.settings));
         last.figures.iter().find(|figures| figures.settings == settings).copied()
     }
 
@@ -61,6 +60,6 @@ impl State {
 
     /// Returns what the figures of the dial depend on.
     pub(crate) fn dialled(&self, size: Size) -> Dialled {
-        Dialled::of((&self.scene, &self.view), &self.settings, size, self.wish())
+        Dialled::of(&self.shot(size), self.wish())
     }
 }

@@ -4,16 +4,14 @@ use std::collections::BTreeMap;
 
 use super::State;
 use crate::app::drawing::snapshot::pictured;
-use marraztu_core::accuracy::{AXES, Settings};
-use marraztu_core::base::image::Size;
-use marraztu_core::scene::{Scene, View};
+use marraztu_core::accuracy::{AXES, Settings, Shot};
 use marraztu_io::Lesson;
 use marraztu_lab::error::{Error, Measure, Region};
 use marraztu_lab::picture_source::Reference;
 use marraztu_lab::report::{Budgets, Report, brief};
 
 /// The contents of the laboratory panel.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Laboratory {
     /// The last measurement, or the results so far of the running one.
     pub report: Option<Report>,
@@ -53,40 +51,12 @@ pub struct Laboratory {
     pub away: bool,
     /// The measured effect of each axis, by the axis's key.
     pub costs: BTreeMap<&'static str, AxisCost>,
-    /// The scene, the view and the size that were measured.
-    pub(crate) measured: Option<(Scene, View, Size)>,
-}
-
-impl Default for Laboratory {
-    fn default() -> Self {
-        Self {
-            report: None,
-            is_rough: false,
-            suite: Vec::new(),
-            shown_suite: None,
-            running: None,
-            left: None,
-            failed: None,
-            measure: Measure::default(),
-            region: Region::default(),
-            panel: None,
-            budgets: Budgets::default(),
-            compare: Compare::Off,
-            reference: Reference::default(),
-            away: false,
-            costs: BTreeMap::new(),
-            judged: None,
-            picking: false,
-            attribution: None,
-            lesson: None,
-            measured: None,
-        }
-    }
+    /// The picture that was measured; other settings do not matter.
+    pub(crate) measured: Option<Shot>,
 }
 
 impl Laboratory {
     /// Returns the report to show.
-    #[must_use]
     pub fn shown(&self) -> Option<&Report> {
         match self.shown_suite {
             Some(i) => self.suite.get(i),
@@ -106,9 +76,8 @@ impl Laboratory {
     }
 
     /// Returns whether the measured scene, view or size differs from the viewport's.
-    #[must_use]
     pub fn is_stale(&self, state: &State) -> bool {
-        self.measured.as_ref().is_some_and(|(scene, view, size)| {
+        self.measured.as_ref().is_some_and(|Shot { scene, view, size, .. }| {
             let same_view = pictured(&state.view) == pictured(view);
             let same_size = state.statistics.size == *size;
             !same_view || !same_size || *scene != state.scene

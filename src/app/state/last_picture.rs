@@ -3,17 +3,15 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::State;
 use crate::app::drawing::reduction::Reduction;
 use crate::app::drawing::viewport_renderer::Drawn;
-use marraztu_core::accuracy::{Samples, Settings};
+use marraztu_core::accuracy::{Samples, Shot};
 use marraztu_core::base::image::Size;
-use marraztu_core::scene::{Scene, View};
 use marraztu_lab::cost::{Costs, Explained};
 use marraztu_render::{Damage, PixelColor};
 
 /// Statistics of the last picture.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Statistics {
     /// The time from the snapshot to the finished picture in memory, on the drawing thread, of the
     /// last picture that differs from the one before.
@@ -36,23 +34,6 @@ pub struct Statistics {
     pub refined: Option<Samples>,
     /// The parts that were redrawn, and why.
     pub changes: Option<Damage>,
-}
-
-impl Default for Statistics {
-    fn default() -> Self {
-        Self {
-            time: Duration::ZERO,
-            size: Size::new(0, 0),
-            pictures: 0,
-            late: false,
-            rate: 0,
-            triangles: 0,
-            reduction: Reduction::NONE,
-            lost: None,
-            refined: None,
-            changes: None,
-        }
-    }
 }
 
 impl Statistics {
@@ -92,12 +73,8 @@ pub struct Plan {
 pub struct Measured {
     /// The costs.
     pub costs: Costs,
-    /// The scene.
-    pub scene: Scene,
-    /// The view.
-    pub view: View,
-    /// The settings of accuracy.
-    pub settings: Settings,
+    /// The picture.
+    pub of: Shot,
 }
 
 /// The explanation of a pixel, and the picture that the pixel belongs to.
@@ -105,25 +82,8 @@ pub struct Measured {
 pub struct ExplainedPixel {
     /// Column and row, from the upper left.
     pub at: [usize; 2],
-    /// The scene.
-    pub scene: Scene,
-    /// The view.
-    pub view: View,
-    /// The settings of accuracy.
-    pub settings: Settings,
-    /// The size of the picture.
-    pub size: Size,
+    /// The picture.
+    pub shot: Shot,
     /// The explanation; `None` if the pixel is outside of the picture.
     pub explained: Option<PixelColor>,
-}
-
-impl ExplainedPixel {
-    /// Returns whether the picture is still the one that was explained.
-    #[must_use]
-    pub fn is_of(&self, state: &State, size: Size) -> bool {
-        let Self { scene, view, settings, .. } = self;
-        self.size == size
-            && (settings, view) == (&state.settings, &state.view)
-            && *scene == state.scene
-    }
 }

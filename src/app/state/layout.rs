@@ -43,7 +43,6 @@ impl Splitter {
         [Self::Left, Self::Right, Self::Switches, Self::Laboratory, Self::Plan];
 
     /// Returns its name for screen readers.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Left => "Width of the left column",
@@ -54,8 +53,12 @@ impl Splitter {
         }
     }
 
+    /// Returns its name in preferences.
+    fn word(self) -> String {
+        format!("{self:?}").to_lowercase()
+    }
+
     /// Returns whether it is dragged to the left and right.
-    #[must_use]
     pub const fn is_upright(self) -> bool {
         matches!(self, Self::Left | Self::Right)
     }
@@ -64,69 +67,39 @@ impl Splitter {
 /// The sizes that the user wishes; `None` is the size that suits the window.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Layout {
-    /// The width of the left column, in points.
-    pub left: Option<f32>,
-    /// The width of the properties, in points.
-    pub right: Option<f32>,
-    /// The share of the left column that the switches take, from 0 to 1.
-    pub switches: Option<f32>,
-    /// The laboratory's share of the height.
-    pub laboratory: Option<f32>,
-    /// The plan's share of the height above the laboratory.
-    pub plan: Option<f32>,
+    /// The wish of each splitter: a width in points, or a height as a share from 0 to 1. That of the
+    /// plan is a share of the height above the laboratory.
+    pub(crate) wishes: [Option<f32>; Splitter::ALL.len()],
     /// The panel that is unfolded in a narrow window.
     pub unfolded: Option<Side>,
 }
 
 /// The places of everything between the menus and the status line.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Places {
     /// The buttons that unfold panels, in a narrow window.
     pub strip: Option<Rect>,
-    /// The list of objects, cameras and lights.
-    pub outline: Option<Rect>,
-    /// The switches of the view.
-    pub switches: Option<Rect>,
-    /// The properties of the selected item.
-    pub properties: Option<Rect>,
-    /// The laboratory.
-    pub laboratory: Option<Rect>,
-    /// The plan.
-    pub plan: Option<Rect>,
+    /// The docked panels.
+    docks: BTreeMap<Dock, Rect>,
     /// The picture.
     pub picture: Rect,
 }
 
 impl Layout {
     /// Returns the sizes that the user has chosen, by the names of the splitters.
-    #[must_use]
     pub fn shares(&self) -> BTreeMap<String, f32> {
-        let chosen = |splitter: Splitter| {
-            let share = match splitter {
-                Splitter::Left => self.left,
-                Splitter::Right => self.right,
-                Splitter::Switches => self.switches,
-                Splitter::Laboratory => self.laboratory,
-                Splitter::Plan => self.plan,
-            };
-            Some((format!("{splitter:?}").to_lowercase(), share?))
-        };
+        let chosen = |splitter: Splitter| Some((splitter.word(), self.wish(splitter)?));
         Splitter::ALL.into_iter().filter_map(chosen).collect()
     }
 
     /// Creates the layout with these sizes.
-    #[must_use]
     pub fn of_shares(shares: &BTreeMap<String, f32>) -> Self {
-        let share =
-            |splitter: Splitter| shares.get(&format!("{splitter:?}").to_lowercase()).copied();
-        Self {
-            left: share(Splitter::Left),
-            right: share(Splitter::Right),
-            switches: share(Splitter::Switches),
-            laboratory: share(Splitter::Laboratory),
-            plan: share(Splitter::Plan),
-            unfolded: None,
-        }
+        let wishes = Splitter::ALL.map(|splitter| shares.get(&splitter.word()).copied());
+        Self { wishes, unfolded: None }
+    }
+
+    const fn wish(&self, splitter: Splitter) -> Option<f32> {
+        self.wishes[splitter as usize]
     }
 }
 
@@ -139,73 +112,67 @@ fn share(of: f32, part: f32, least: f32, rest: f32) -> f32 {
 
 impl Layout {
     /// Divides `area` among the open panels and the picture.
-    #[must_use]
     pub fn divide(&self, area: Rect, panels: OpenPanels) -> Places {
-        let mut rest = area;
+        let mut places = Places::of_picture(area);
         // The laboratory spans the width of the window, so it is cut off first.
-        let laboratory = panels.has(Panel::Laboratory).then(|| {
-            let height = share(area.height(), self.laboratory.unwrap_or(0.5), 150.0, 150.0);
-            let (above, place) = cut(rest, area.bottom() - height);
-            rest = above;
-            place
-        });
-        let mut places = Places { laboratory, ..Places::of_picture(rest) };
+        if panels.has(Panel::Laboratory) {
+            let part = self.wish(Splitter::Laboratory).unwrap_or(0.5);
+            places.cut_off(Dock::Bottom, share(area.height(), part, 150.0, 150.0));
+        }
         if area.width() < NARROW {
-            self.one_column(&mut rest, &mut places);
+            self.one_column(&mut places);
         } else {
-            self.columns(area.width(), &mut rest, panels, &mut places);
+            self.columns(area.width(), panels, &mut places);
         }
         // The plan lies under the picture, between the columns.
-        places.plan = panels.has(Panel::Plan).then(|| {
-            let height = share(rest.height(), self.plan.unwrap_or(0.34), 90.0, LEAST);
-            let (above, place) = cut(rest, rest.bottom() - height);
-            rest = above;
-            place
-        });
-        places.picture = rest;
+        if panels.has(Panel::Plan) {
+            let part = self.wish(Splitter::Plan).unwrap_or(0.34);
+            let height = share(places.picture.height(), part, 90.0, LEAST);
+            places.cut_off(Dock::UnderPicture, height);
+        }
         places
     }
 
     /// Places the strip and the one panel that is unfolded.
-    fn one_column(&self, rest: &mut Rect, places: &mut Places) {
-        places.strip = Some(rest.with_max_x(rest.left() + STRIP));
+    fn one_column(&self, places: &mut Places) {
+        let Places { strip, docks, picture: rest } = places;
+        *strip = Some(rest.with_max_x(rest.left() + STRIP));
         rest.min.x += STRIP;
         let Some(side) = self.unfolded else { return };
         let wish = match side {
-            Side::Outline | Side::Switches => self.left,
-            Side::Properties => self.right,
+            Side::Outline | Side::Switches => self.wish(Splitter::Left),
+            Side::Properties => self.wish(Splitter::Right),
         };
         let width = share(rest.width(), wish.unwrap_or(250.0) / rest.width(), 220.0, 40.0);
-        let place = Some(rest.with_max_x(rest.left() + width));
-        match side {
-            Side::Outline => places.outline = place,
-            Side::Switches => places.switches = place,
-            Side::Properties => places.properties = place,
-        }
+        docks.insert(Dock::Beside(side), rest.with_max_x(rest.left() + width));
         rest.min.x += width;
     }
 
     /// Places the columns at both sides.
-    fn columns(&self, width: f32, rest: &mut Rect, panels: OpenPanels, places: &mut Places) {
+    fn columns(&self, width: f32, panels: OpenPanels, places: &mut Places) {
+        let Places { docks, picture: rest, .. } = places;
+        let mut dock = |side, place| docks.extend([(Dock::Beside(side), place)]);
         let (left, right) = if width >= WIDE { (228.0, 280.0) } else { (212.0, 256.0) };
         if panels.has(Panel::Outline) || panels.has(Panel::View) {
-            let left = self.left.unwrap_or(left).clamp(180.0, width * 0.28).round();
+            let left = self.wish(Splitter::Left).unwrap_or(left).clamp(180.0, width * 0.28).round();
             let column = rest.with_max_x(rest.left() + left);
             rest.min.x += left;
             match (panels.has(Panel::Outline), panels.has(Panel::View)) {
                 (true, true) => {
-                    let part = self.switches.unwrap_or(0.56);
+                    let part = self.wish(Splitter::Switches).unwrap_or(0.56);
                     let height = share(column.height(), part, LEAST, LEAST);
                     let (above, below) = cut(column, column.bottom() - height);
-                    (places.outline, places.switches) = (Some(above), Some(below));
+                    dock(Side::Outline, above);
+                    dock(Side::Switches, below);
                 }
-                (true, false) => places.outline = Some(column),
-                _ => places.switches = Some(column),
+                (true, false) => dock(Side::Outline, column),
+                _ => dock(Side::Switches, column),
             }
         }
         if panels.has(Panel::Properties) {
-            let right = self.right.unwrap_or(right).clamp(232.0, width * 0.34).round();
-            places.properties = Some(rest.with_min_x(rest.right() - right));
+            let right =
+                self.wish(Splitter::Right).unwrap_or(right).clamp(232.0, width * 0.34).round();
+            dock(Side::Properties, rest.with_min_x(rest.right() - right));
             rest.max.x -= right;
         }
     }
@@ -216,33 +183,24 @@ impl Layout {
         let part =
             |whole: Rect| ((whole.bottom() - to.y) / whole.height().max(1.0)).clamp(0.05, 0.95);
         let joined = |a: Option<Rect>, b: Option<Rect>| Some(a?.union(b?));
-        match splitter {
-            Splitter::Left => self.left = Some(to.x - area.left() - now.strip_width()),
-            Splitter::Right if now.strip.is_some() => {
-                self.right = Some(to.x - area.left() - now.strip_width());
-            }
-            Splitter::Right => self.right = Some(area.right() - to.x),
+        let wish = match splitter {
+            Splitter::Left => Some(to.x - area.left() - now.strip_width()),
+            Splitter::Right if now.strip.is_some() => Some(to.x - area.left() - now.strip_width()),
+            Splitter::Right => Some(area.right() - to.x),
             Splitter::Switches => {
-                self.switches = joined(now.outline, now.switches).map(part).or(self.switches);
+                joined(now.beside(Side::Outline), now.beside(Side::Switches)).map(part)
             }
-            Splitter::Laboratory => self.laboratory = Some(part(area)),
-            Splitter::Plan => {
-                self.plan = joined(now.plan, Some(now.picture)).map(part).or(self.plan);
-            }
-        }
+            Splitter::Laboratory => Some(part(area)),
+            Splitter::Plan => joined(now.of(Dock::UnderPicture), Some(now.picture)).map(part),
+        };
+        self.wishes[splitter as usize] = wish.or(self.wish(splitter));
         self
     }
 
     /// Returns the layout with a splitter at its default place.
     #[must_use]
     pub const fn reset(mut self, splitter: Splitter) -> Self {
-        match splitter {
-            Splitter::Left => self.left = None,
-            Splitter::Right => self.right = None,
-            Splitter::Switches => self.switches = None,
-            Splitter::Laboratory => self.laboratory = None,
-            Splitter::Plan => self.plan = None,
-        }
+        self.wishes[splitter as usize] = None;
         self
     }
 }
@@ -254,17 +212,15 @@ fn cut(rect: Rect, y: f32) -> (Rect, Rect) {
 
 impl Places {
     /// Gives everything to the picture.
-    #[must_use]
     pub const fn of_picture(picture: Rect) -> Self {
-        Self {
-            strip: None,
-            outline: None,
-            switches: None,
-            properties: None,
-            laboratory: None,
-            plan: None,
-            picture,
-        }
+        Self { strip: None, docks: BTreeMap::new(), picture }
+    }
+
+    /// Gives the lower part of the picture, of this height, to a dock.
+    fn cut_off(&mut self, dock: Dock, height: f32) {
+        let (above, below) = cut(self.picture, self.picture.bottom() - height);
+        self.picture = above;
+        self.docks.insert(dock, below);
     }
 
     fn strip_width(&self) -> f32 {
@@ -272,28 +228,15 @@ impl Places {
     }
 
     /// Returns the place of a dock, if it holds a panel.
-    #[must_use]
-    pub const fn of(&self, dock: Dock) -> Option<Rect> {
-        match dock {
-            Dock::Beside(Side::Outline) => self.outline,
-            Dock::Beside(Side::Switches) => self.switches,
-            Dock::Beside(Side::Properties) => self.properties,
-            Dock::Bottom => self.laboratory,
-            Dock::UnderPicture => self.plan,
-            Dock::Floating => None,
-        }
+    pub fn of(&self, dock: Dock) -> Option<Rect> {
+        self.docks.get(&dock).copied()
     }
 
-    /// Iterates over all panels and the picture.
-    pub fn all(&self) -> impl Iterator<Item = Rect> {
-        let Self { strip, outline, switches, properties, laboratory, plan, picture } = *self;
-        [strip, outline, switches, properties, laboratory, plan, Some(picture)]
-            .into_iter()
-            .flatten()
+    fn beside(&self, side: Side) -> Option<Rect> {
+        self.of(Dock::Beside(side))
     }
 
     /// Returns the area for grabbing a splitter, `thick` points wide, if the splitter is shown.
-    #[must_use]
     pub fn grip(&self, splitter: Splitter, thick: f32) -> Option<Rect> {
         let upright = |rect: Rect, x: f32| {
             Rect::from_center_size(pos2(x, rect.center().y), vec2(thick, rect.height()))
@@ -301,22 +244,23 @@ impl Places {
         let level = |rect: Rect| {
             Rect::from_center_size(pos2(rect.center().x, rect.top()), vec2(rect.width(), thick))
         };
+        let (outline, switches) = (self.beside(Side::Outline), self.beside(Side::Switches));
         match splitter {
             Splitter::Left => {
-                let column = match (self.outline, self.switches) {
+                let column = match (outline, switches) {
                     (Some(outline), Some(switches)) => outline.union(switches),
                     (one, other) => one.or(other)?,
                 };
                 Some(upright(column, column.right()))
             }
             Splitter::Right => {
-                let place = self.properties?;
+                let place = self.beside(Side::Properties)?;
                 let x = if self.strip.is_some() { place.right() } else { place.left() };
                 Some(upright(place, x))
             }
-            Splitter::Switches => self.outline.and(self.switches).map(level),
-            Splitter::Laboratory => self.laboratory.map(level),
-            Splitter::Plan => self.plan.map(level),
+            Splitter::Switches => outline.and(switches).map(level),
+            Splitter::Laboratory => self.of(Dock::Bottom).map(level),
+            Splitter::Plan => self.of(Dock::UnderPicture).map(level),
         }
     }
 }
@@ -355,21 +299,17 @@ mod tests {
     }
 
     fn wished(width: f32, part: f32) -> Layout {
-        Layout {
-            left: Some(width),
-            right: Some(width),
-            switches: Some(part),
-            laboratory: Some(part),
-            plan: Some(part),
-            unfolded: Some(Side::Properties),
-        }
+        let wishes = [width, width, part, part, part].map(Some);
+        Layout { wishes, unfolded: Some(Side::Properties) }
     }
 
     #[test]
     fn panels_and_picture_fill_the_area_and_share_no_point() {
         every_layout(|layout, area, panels| {
             let places = layout.divide(area, panels);
-            let all: Vec<Rect> = places.all().collect();
+            let docks = places.docks.values().copied();
+            let all: Vec<_> =
+                places.strip.into_iter().chain(docks).chain([places.picture]).collect();
             let sum: f32 = all.iter().map(Rect::area).sum();
             assert!((sum - area.area()).abs() < 1.0, "{places:?}");
             for (i, a) in all.iter().enumerate() {
@@ -400,13 +340,14 @@ mod tests {
 
     #[test]
     fn a_window_that_was_small_has_its_panels_back() {
-        let layout = Layout { left: Some(300.0), laboratory: Some(0.6), ..Layout::default() };
+        let wishes = [("left".to_owned(), 300.0), ("laboratory".to_owned(), 0.6)];
+        let layout = Layout::of_shares(&wishes.into());
         let panels = OpenPanels::DEFAULT.with(Panel::Laboratory, true);
         let large = Rect::from_min_size(pos2(0.0, 0.0), vec2(1920.0, 1030.0));
         let before = layout.divide(large, panels);
         let small = layout.divide(Rect::from_min_size(large.min, vec2(640.0, 350.0)), panels);
-        assert!(small.outline.is_none() && small.strip.is_some());
+        assert!(small.beside(Side::Outline).is_none() && small.strip.is_some());
         assert_eq!(layout.divide(large, panels), before);
-        assert_eq!(before.outline.unwrap().width(), 300.0);
+        assert_eq!(before.beside(Side::Outline).unwrap().width(), 300.0);
     }
 }

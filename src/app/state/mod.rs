@@ -19,7 +19,8 @@ use dial::DialState;
 use laboratory::Laboratory;
 pub use last_picture::{ExplainedPixel, Measured, Plan, Statistics};
 use layout::Layout;
-use marraztu_core::accuracy::{Samples, Settings};
+use marraztu_core::accuracy::{Samples, Settings, Shot};
+use marraztu_core::base::image::Size;
 use marraztu_core::edit::several::Others;
 use marraztu_core::edit::{Gesture, GesturePhase, History, selection};
 use marraztu_core::scene::{ItemId, Light, LightId, Object, Scene, UpAxis, View};
@@ -144,7 +145,6 @@ impl Default for DrawingChoices {
 
 impl State {
     /// Creates the state of a new scene, without history.
-    #[must_use]
     pub fn new(scene: Scene, view: View) -> Self {
         Self {
             scene,
@@ -194,34 +194,43 @@ impl State {
         }
     }
 
+    /// Returns the scene as it is shown now, in a picture of this size.
+    pub(crate) fn shot(&self, size: Size) -> Shot {
+        Shot::new(&self.scene, &self.view, &self.settings, size)
+    }
+
     /// Returns the item that the keys act on.
-    #[must_use]
     pub fn selected(&self) -> Option<ItemId> {
         selection::selected(&self.view)
     }
 
     /// Returns the other selected items, without the one that the keys act on.
-    #[must_use]
     pub fn others(&self) -> Vec<ItemId> {
         self.several.of(&self.scene, &self.view).collect()
     }
 
     /// Returns whether an item is selected, whether or not the keys act on it.
-    #[must_use]
     pub fn is_selected(&self, id: ItemId) -> bool {
         self.selected() == Some(id)
             || self.several.of(&self.scene, &self.view).any(|other| other == id)
     }
 
+    /// Returns whether an object or a camera's mark is drawn, or a light is on.
+    pub(crate) fn is_shown(&self, id: ItemId) -> Option<bool> {
+        Some(match id {
+            ItemId::Object(id) => self.scene.objects.get(id)?.visible,
+            ItemId::Camera(id) => self.scene.cameras.get(id)?.visible,
+            ItemId::Light(id) => self.scene.lights.get(id)?.on,
+        })
+    }
+
     /// Returns whether there are enough items for the outline to have a filter.
-    #[must_use]
     pub fn has_filter(&self) -> bool {
         let Scene { objects, cameras, lights, .. } = &self.scene;
         objects.len() + cameras.len() + lights.len() >= MANY
     }
 
     /// Returns whether the outline lists an item.
-    #[must_use]
     pub fn is_listed(&self, id: ItemId) -> bool {
         let filter = self.filter.to_lowercase();
         !self.has_filter()
@@ -231,7 +240,6 @@ impl State {
     }
 
     /// Names the targets of commands: the name of the selected item, or the number of items.
-    #[must_use]
     pub fn acted_on_name(&self) -> String {
         match self.others().len() {
             0 => self.selected_name().to_owned(),
@@ -240,7 +248,6 @@ impl State {
     }
 
     /// Returns whether overlays are drawn over the picture now. A comparison hides them.
-    #[must_use]
     pub fn shows_overlays(&self) -> bool {
         self.overlays && self.lab.compare == laboratory::Compare::Off
     }
@@ -248,7 +255,6 @@ impl State {
     /// Returns the samples per pixel for refinement while the user is idle; `None` if the picture
     /// is shown with the samples of the settings. Comparisons and measurements always use the
     /// settings.
-    #[must_use]
     pub fn refined_to(&self) -> Option<Samples> {
         let DrawingChoices { refines, refined, .. } = self.drawing;
         let is_alone = self.lab.compare == laboratory::Compare::Off && self.lab.running.is_none();
@@ -268,25 +274,21 @@ impl State {
     }
 
     /// Returns the name of the selected item; empty if nothing is selected.
-    #[must_use]
     pub fn selected_name(&self) -> &str {
         self.selected().and_then(|id| self.name(id)).unwrap_or_default()
     }
 
     /// Returns the name of an item.
-    #[must_use]
     pub fn name(&self, id: ItemId) -> Option<&str> {
         self.scene.name(id)
     }
 
     /// Returns the file name of the scene or of its only model; `None` if it has no file.
-    #[must_use]
     pub fn file_name(&self) -> Option<String> {
         let name = self.path.as_deref().or(self.only_model()).and_then(Path::file_name);
         name.map(|name| name.to_string_lossy().into_owned())
     }
 
-    /// Returns the file of the only model.
     fn only_model(&self) -> Option<&Path> {
         let mut objects = self.scene.objects.iter();
         let model = objects.next().and_then(|(_, object)| object.model.source.as_deref());
@@ -341,7 +343,6 @@ impl State {
     }
 
     /// Returns the state of the window that a scene file stores.
-    #[must_use]
     pub fn window(&self) -> WindowState {
         WindowState {
             coarse_while_moving: self.coarse_while_moving,
@@ -358,7 +359,6 @@ impl State {
     }
 
     /// Returns whether anything in the scene moves by itself.
-    #[must_use]
     pub fn is_animated(&self) -> bool {
         let circles = |light: &Light| light.kind.orbit().is_some_and(|orbit| orbit.on);
         self.scene.objects.iter().any(|(_, object)| object.spin.is_on())
@@ -375,7 +375,6 @@ impl State {
 
     /// Returns the phase of the next change in `gesture`. The first change pushes the old
     /// transform.
-    #[must_use]
     pub fn phase(&self, gesture: Gesture) -> GesturePhase {
         if gesture != Gesture::Whole && gesture == self.gesture {
             GesturePhase::Continued

@@ -37,9 +37,13 @@ pub struct Notice {
 }
 
 impl Notice {
+    /// Creates a notice of one line.
+    pub const fn new(text: String) -> Self {
+        Self { text, details: Vec::new(), offer: None }
+    }
+
     /// Returns whether it waits for an answer. Any other notice moves to the status line after some
     /// seconds.
-    #[must_use]
     pub const fn needs_answer(&self) -> bool {
         match self.offer {
             Some(Offer::Frame(_) | Offer::TwoSides(_) | Offer::Show(_) | Offer::Opaque(_)) => true,
@@ -74,7 +78,6 @@ pub enum Offer {
 
 impl Offer {
     /// Returns the label of its button.
-    #[must_use]
     pub const fn label(self) -> &'static str {
         match self {
             Self::Frame(_) => "Frame",
@@ -86,7 +89,6 @@ impl Offer {
     }
 
     /// Returns the object that it is about.
-    #[must_use]
     pub const fn object(self) -> ObjectId {
         match self {
             Self::Frame(id)

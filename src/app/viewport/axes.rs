@@ -17,7 +17,6 @@ const END: f32 = 8.0;
 /// Pictures with a smaller side than this do not show the axes.
 const LEAST: f32 = 180.0;
 
-/// The end of an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct End {
     axis: Axis,

@@ -5,7 +5,7 @@ use egui::Context;
 use super::marks::Projection;
 use super::over::Over;
 use super::{Menu, Purpose, Viewport, menu, picking};
-use crate::app::actions::{Action, Also, Request};
+use crate::app::actions::{Action, Also, Request, Requests};
 use crate::app::drawing::worker::Pick;
 use crate::app::state::State;
 use marraztu_core::base::image::Size;
@@ -21,7 +21,7 @@ impl Viewport {
         state: &State,
         pick: Pick<Purpose>,
         hit: Option<Hit>,
-        requests: &mut Vec<Request>,
+        requests: &mut Requests,
     ) {
         let item = hit.map(|hit| hit.item);
         match pick.purpose {

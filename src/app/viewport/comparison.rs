@@ -8,15 +8,14 @@ use std::sync::Arc;
 use egui::{Align2, ColorImage, Context, CursorIcon, Id, Pos2, Rect, Sense, Stroke, TextureHandle};
 use egui::{TextureOptions, Ui, pos2, vec2};
 
-use crate::app::actions::{LabRequest, Request};
+use crate::app::actions::{LabRequest, Request, Requests};
 use crate::app::state::State;
 use crate::app::state::laboratory::{Compare, in_words};
 use crate::app::tasks::Task;
 use crate::app::theme;
 use crate::app::widgets::plate::plate_ui;
-use marraztu_core::accuracy::{Settings, Shot};
+use marraztu_core::accuracy::Shot;
 use marraztu_core::base::image::{Picture, Size};
-use marraztu_core::scene::{Scene, View};
 use marraztu_io::Progress;
 use marraztu_lab::error::{Error, amplified};
 use marraztu_lab::picture_source::{PictureSource as _, Reference, Studio};
@@ -24,10 +23,7 @@ use marraztu_lab::picture_source::{PictureSource as _, Reference, Studio};
 /// All inputs of the two pictures.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Compared {
-    pub(crate) scene: Scene,
-    pub(crate) view: View,
-    pub(crate) settings: Settings,
-    pub(crate) size: Size,
+    pub(crate) shot: Shot,
     pub(crate) against: Reference,
 }
 
@@ -47,13 +43,12 @@ pub(crate) struct Drawing {
 
 /// Draws both pictures; `None` if `progress` is cancelled.
 pub(crate) fn draw(of: Compared, progress: &Progress) -> Option<Pair> {
-    let shot = Shot::new(&of.scene, &of.view, &of.settings, of.size);
-    let mut studio = Studio::watched(shot, progress.clone());
-    let exact = studio.rendering(&of.against.of(&of.settings));
+    let mut studio = Studio::watched(of.shot.clone(), progress.clone());
+    let exact = studio.rendering(&of.against.of(&of.shot.settings));
     if progress.is_cancelled() {
         return None;
     }
-    let ours = studio.rendering(&of.settings);
+    let ours = studio.rendering(&of.shot.settings);
     if progress.is_cancelled() {
         return None;
     }
@@ -93,7 +88,6 @@ impl Comparison {
         (self.drawn, self.exact, self.error, self.current) = (None, None, None, false);
     }
 
-    /// Shows a new pair.
     pub(crate) fn take(&mut self, ctx: &Context, drawn: Box<Pair>) {
         load(ctx, &mut self.exact, "exact", &drawn.exact);
         self.error = None;
@@ -101,7 +95,7 @@ impl Comparison {
     }
 
     /// Shows the comparison over the picture in `rect`.
-    pub(crate) fn ui(&mut self, ui: &Ui, rect: Rect, state: &State, requests: &mut Vec<Request>) {
+    pub(crate) fn ui(&mut self, ui: &Ui, rect: Rect, state: &State, requests: &mut Requests) {
         match state.lab.compare {
             Compare::Off => {}
             Compare::Split(part) => self.split_ui(ui, rect, (part, state), requests),
@@ -109,13 +103,7 @@ impl Comparison {
         }
     }
 
-    fn split_ui(
-        &self,
-        ui: &Ui,
-        rect: Rect,
-        (part, state): (f32, &State),
-        requests: &mut Vec<Request>,
-    ) {
+    fn split_ui(&self, ui: &Ui, rect: Rect, (part, state): (f32, &State), requests: &mut Requests) {
         let scale = ui.ctx().pixels_per_point();
         // The split is aligned to whole pixels, so it cuts through none.
         let x = ((rect.left() + part * rect.width()) * scale).round() / scale;
@@ -136,11 +124,8 @@ impl Comparison {
         let response = ui.interact(grip_at(rect, part), Id::unique("split"), Sense::drag());
         let response = response.on_hover_cursor(CursorIcon::ResizeHorizontal);
         response.widget_info(|| {
-            egui::WidgetInfo::slider(
-                true,
-                f64::from(part),
-                "Split between the reference and the picture",
-            )
+            let name = "Split between the reference and the picture";
+            egui::WidgetInfo::slider(true, f64::from(part), name)
         });
         ui.painter().rect_filled(handle, 4.0, theme::accent(ui.visuals()));
         if let Some(at) = response.interact_pointer_pos().filter(|_| response.dragged()) {
@@ -214,16 +199,15 @@ fn load(ctx: &Context, texture: &mut Option<TextureHandle>, name: &str, picture:
 #[cfg(test)]
 mod tests {
     use super::*;
-    use marraztu_core::accuracy::AXES;
+    use marraztu_core::accuracy::{AXES, Settings};
 
     #[test]
     fn a_comparison_that_is_cancelled_gives_no_pictures() {
         let (scene, view) = marraztu_io::default_scene();
-        let (settings, size) = (Settings::default(), Size::new(64, 48));
+        let shot = Shot::new(&scene, &view, &Settings::default(), Size::new(64, 48));
         let shading = Reference::Alone(&AXES[0]);
         for against in [Reference::Ideal, shading] {
-            let (scene, view) = (scene.clone(), view.clone());
-            let of = Compared { scene, view, settings, size, against };
+            let of = Compared { shot: shot.clone(), against };
             let progress = Progress::new();
             assert!(draw(of.clone(), &progress).is_some());
             progress.cancel();

@@ -1,4 +1,5 @@
-//! Helpers over the picture: the grid on the ground, and the sizes of the selected objects.
+//! Helpers over the picture: the grid on the ground, the sizes of the selected objects, and the
+//! names of missing files.
 //!
 //! The grid appears behind everything, because its lines cover only pixels that show the
 //! background.
@@ -7,9 +8,11 @@ use egui::{Color32, ColorImage, Painter, Pos2, Rect, Stroke, TextStyle, Ui, vec2
 use glam::DVec3;
 
 use super::marks::Projection;
+use super::pixel_at;
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::number::short;
+use crate::app::widgets::text::file_name;
 use marraztu_core::base::math::Axis;
 use marraztu_core::edit::{arrange, steps};
 use marraztu_core::scene::{Bounds, ItemId};
@@ -86,20 +89,9 @@ impl Ground<'_> {
         }
     }
 
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        clippy::cast_precision_loss,
-        reason = "brought to the picture's borders, which are small"
-    )]
     fn shows(&self, at: Pos2) -> bool {
-        let [width, height] = self.image.size;
-        let part = (at - self.rect.min) / self.rect.size();
-        let place = |part: f32, count: usize| {
-            ((part * count as f32).max(0.0) as usize).min(count.saturating_sub(1))
-        };
-        let (x, y) = (place(part.x, width), place(part.y, height));
-        self.image.pixels.get(y * width + x) == Some(&self.background)
+        let [x, y] = pixel_at(self.rect, self.image.size, at);
+        self.image.pixels.get(y * self.image.width() + x) == Some(&self.background)
     }
 }
 
@@ -172,8 +164,29 @@ fn box_ui(ui: &Ui, painter: &Painter, onto: &Projection, bounds: &Bounds, stroke
 
 const LETTERS: [&str; 3] = ["x", "y", "z"];
 
+/// Shows the file name of each missing model at its box.
+pub(super) fn placeholders_ui(ui: &Ui, state: &State, onto: &Projection) {
+    let view = &state.view;
+    if !state.shows_overlays() || view.polygons.is_some() {
+        return;
+    }
+    let painter = ui.painter().with_clip_rect(onto.rect());
+    for (id, object) in state.scene.objects.iter() {
+        let is_shown = object.visible && (!view.only_selected || view.object == Some(id));
+        let file = object.model.source.as_deref().filter(|_| object.model.is_placeholder());
+        if let (true, Some(file)) = (is_shown, file)
+            && let Some(at) = onto.place(object.centre(view.time))
+            && onto.rect().contains(at)
+        {
+            let text = format!("{} is missing", file_name(file));
+            // Below the middle, which the gizmo of the selection occupies.
+            label_ui(ui, &painter, at + vec2(0.0, 28.0), text, theme::warning_on_dark());
+        }
+    }
+}
+
 /// Draws a text on a dark plate, centred at `at`.
-pub(super) fn label_ui(ui: &Ui, painter: &Painter, at: Pos2, text: String, color: Color32) {
+fn label_ui(ui: &Ui, painter: &Painter, at: Pos2, text: String, color: Color32) {
     let font = TextStyle::Small.resolve(ui.style());
     let galley = painter.layout_no_wrap(text, font, color);
     let size = galley.size() + vec2(8.0, 4.0);

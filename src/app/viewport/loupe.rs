@@ -27,7 +27,6 @@ const LINE: f32 = 16.0;
 /// Returns the colour of a pixel of the window, by column and row, if it is known.
 type PixelColor<'a> = dyn Fn(i32, i32) -> Option<[u8; 4]> + 'a;
 
-/// The state of the loupe.
 #[derive(Debug, Default)]
 pub(super) struct Loupe {
     /// The window that was requested last.
@@ -42,7 +41,6 @@ impl Loupe {
         (self.asked, self.ideal) = (None, None);
     }
 
-    /// Takes a window of the ideal.
     pub(super) fn take(&mut self, window: PixelBox, picture: Picture) {
         self.ideal = Some((window, picture));
     }
@@ -163,13 +161,9 @@ fn square_ui(painter: &Painter, square: Rect, window: PixelBox, colors: &PixelCo
 fn mark_ui(painter: &Painter, square: Rect, [x, y]: [i32; 2]) {
     let [x, y] = [x, y].map(|i| f32::from(i16::try_from(i).unwrap_or(0)) * PIXEL);
     let pixel = Rect::from_min_size(square.min + vec2(x, y), vec2(PIXEL, PIXEL));
-    painter.rect_stroke(
-        pixel.expand(1.0),
-        0.0,
-        Stroke::new(1.0, Color32::BLACK),
-        StrokeKind::Outside,
-    );
-    let light = Stroke::new(1.0, theme::accent_on_dark());
+    let (dark, light) =
+        (Stroke::new(1.0, Color32::BLACK), Stroke::new(1.0, theme::accent_on_dark()));
+    painter.rect_stroke(pixel.expand(1.0), 0.0, dark, StrokeKind::Outside);
     painter.rect_stroke(pixel, 0.0, light, StrokeKind::Outside);
 }
 

@@ -94,7 +94,6 @@ impl Projection {
 /// The outline of lines, which makes them visible on any background.
 const SHADE: Color32 = Color32::from_black_alpha(110);
 
-/// A mark on the screen.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Mark {
     pub(super) id: LightId,

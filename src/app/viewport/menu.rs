@@ -3,13 +3,13 @@
 use egui::{Id, Ui};
 
 use super::Viewport;
-use crate::app::actions::{ADD_LIGHTS, Action, Request};
+use crate::app::actions::{ADD_LIGHTS, Action, Request, Requests};
 use crate::app::state::State;
 use marraztu_core::scene::ItemId;
 
 impl Viewport {
     /// Shows the menu while it is open.
-    pub(super) fn menu_ui(&self, ui: &Ui, state: &State, requests: &mut Vec<Request>) {
+    pub(super) fn menu_ui(&self, ui: &Ui, state: &State, requests: &mut Requests) {
         let Some(menu) = self.menu else { return };
         let popup = egui::Popup::new(id(), ui.ctx().clone(), menu.at, ui.layer_id())
             .kind(egui::PopupKind::Menu)
@@ -37,7 +37,6 @@ impl Viewport {
 /// The menu of the background; the lights to add follow it.
 const ON_NOTHING: &[Action] = &[Action::FrameAll, Action::Load, Action::AddCamera];
 
-/// Returns the menu of an item.
 const fn actions_on(item: ItemId) -> &'static [Action] {
     match item {
         ItemId::Object(_) => &[
@@ -80,7 +79,6 @@ const fn actions_on(item: ItemId) -> &'static [Action] {
     }
 }
 
-/// Returns the id of the menu.
 pub(super) fn id() -> Id {
     Id::unique("viewport menu")
 }

@@ -13,9 +13,7 @@ mod marks;
 mod menu;
 mod mouse;
 mod over;
-mod overlay;
 mod picking;
-mod placeholders;
 
 use std::sync::Arc;
 
@@ -25,7 +23,7 @@ use egui::{
 };
 use glam::DMat4;
 
-use crate::app::actions::{Action, LabRequest, Request};
+use crate::app::actions::{Action, LabRequest, Request, Requests};
 use crate::app::drawing::border::Border;
 use crate::app::drawing::worker::{News, Pick, Worker};
 use crate::app::input::keyboard::{Keyboard, Letters};
@@ -40,7 +38,6 @@ use marraztu_render::Hit;
 use mouse::{Mouse, Under};
 use over::Over;
 
-/// The purpose of a pick.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Purpose {
     /// Finds the item under the pointer.
@@ -113,7 +110,6 @@ impl Viewport {
         self.place.map(|(rect, _)| rect)
     }
 
-    /// Returns the image on screen.
     pub(crate) fn image(&self) -> Option<&Arc<ColorImage>> {
         self.image.as_ref()
     }
@@ -139,7 +135,7 @@ impl Viewport {
     }
 
     /// Cancels the current drag. Returns whether there was one.
-    pub(crate) fn cancel_drag(&mut self, requests: &mut Vec<Request>) -> bool {
+    pub(crate) fn cancel_drag(&mut self, requests: &mut Requests) -> bool {
         self.mouse.cancel(requests)
     }
 
@@ -149,7 +145,7 @@ impl Viewport {
         ctx: &Context,
         state: &State,
         news: News<Purpose>,
-        requests: &mut Vec<Request>,
+        requests: &mut Requests,
     ) {
         if news.border.is_some() {
             self.border = news.border;
@@ -183,13 +179,12 @@ impl Viewport {
         }
     }
 
-    /// Shows the picture in all of `ui`.
     pub(crate) fn ui(
         &mut self,
         ui: &Ui,
         state: &State,
         worker: &Worker<Purpose>,
-        requests: &mut Vec<Request>,
+        requests: &mut Requests,
     ) {
         let (rect, size) = whole_pixels(ui);
         self.place = Some((rect, size));
@@ -250,7 +245,6 @@ impl Viewport {
         self.menu_ui(ui, state, requests);
     }
 
-    /// Shows the loupe at the pointer.
     fn loupe_ui(&mut self, ui: &Ui, state: &State, response: &Response, worker: &Worker<Purpose>) {
         let Some(pointer) = response.hover_pos().filter(|_| state.loupe) else { return };
         let at = self.pixel(pointer);
@@ -283,7 +277,7 @@ impl Viewport {
         if let (Some(border), Some((rect, _))) = (&self.border, self.place)
             && Some(border.item) == over
         {
-            overlay::border_ui(ui, rect, border, egui::Color32::WHITE);
+            over::border_ui(ui, rect, border, egui::Color32::WHITE);
         }
     }
 
@@ -305,19 +299,9 @@ impl Viewport {
     }
 
     /// Returns the pixel of the picture under a point of the window.
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        clippy::cast_precision_loss,
-        reason = "brought to the picture's borders, which are small"
-    )]
     fn pixel(&self, at: Pos2) -> [usize; 2] {
-        let Some((rect, size)) = self.place else { return [0, 0] };
-        let part = (at - rect.min) / rect.size();
-        let along = |part: f32, count: usize| {
-            ((part * count as f32).max(0.0) as usize).min(count.saturating_sub(1))
-        };
-        [along(part.x, size.width), along(part.y, size.height)]
+        self.place
+            .map_or([0, 0], |(rect, Size { width, height })| pixel_at(rect, [width, height], at))
     }
 
     /// Returns the centre of a pixel in the window.
@@ -347,6 +331,21 @@ impl Viewport {
         let Some((rect, _)) = self.place else { return };
         plate_ui(ui, rect, egui::Align2::LEFT_BOTTOM, text);
     }
+}
+
+/// Returns the pixel under a point of the window, of a picture of this size in `rect`.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    clippy::cast_precision_loss,
+    reason = "brought to the picture's borders, which are small"
+)]
+fn pixel_at(rect: Rect, [width, height]: [usize; 2], at: Pos2) -> [usize; 2] {
+    let part = (at - rect.min) / rect.size();
+    let along = |part: f32, count: usize| {
+        ((part * count as f32).max(0.0) as usize).min(count.saturating_sub(1))
+    };
+    [along(part.x, width), along(part.y, height)]
 }
 
 /// Returns the rest of `ui`, aligned to whole pixels, and its size in pixels.

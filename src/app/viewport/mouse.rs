@@ -21,7 +21,7 @@ use glam::{DVec2, DVec3};
 use super::Purpose;
 use super::comparison;
 use super::gizmo::{Gizmo, Grab};
-use crate::app::actions::Request;
+use crate::app::actions::{Request, Requests};
 use crate::app::state::State;
 use crate::app::widgets::gestures;
 use marraztu_core::base::image::Size;
@@ -118,7 +118,7 @@ impl Mouse {
     }
 
     /// Cancels the current drag. Returns whether there was one.
-    pub(crate) fn cancel(&mut self, requests: &mut Vec<Request>) -> bool {
+    pub(crate) fn cancel(&mut self, requests: &mut Requests) -> bool {
         match &mut self.drag {
             Some(drag) if !drag.over => {
                 drag.over = true;
@@ -141,7 +141,7 @@ impl Mouse {
         response: &Response,
         state: &State,
         under: Under<'_>,
-        requests: &mut Vec<Request>,
+        requests: &mut Requests,
     ) -> Vec<(Pos2, Purpose)> {
         let mut picks = Vec::new();
         // Events are handled one by one: on a slow machine, a frame may contain a whole click.
@@ -191,7 +191,7 @@ impl Mouse {
         response: &Response,
         (state, under): (&State, Under<'_>),
         (from, button, modifiers): (Pos2, PointerButton, Modifiers),
-        requests: &mut Vec<Request>,
+        requests: &mut Requests,
     ) {
         if self.drag.is_some() {
             if button == PointerButton::Secondary {
@@ -241,7 +241,7 @@ impl Mouse {
     }
 
     /// Applies the movement of the pointer since the last call.
-    fn go_on(&mut self, ui: &Ui, state: &State, size: Size, requests: &mut Vec<Request>) {
+    fn go_on(&mut self, ui: &Ui, state: &State, size: Size, requests: &mut Requests) {
         let Some(drag) = &mut self.drag else { return };
         // The first movement includes the part during which the drag could still become a click.
         drag.moved |= (drag.to - drag.from).length() > CLICK;
@@ -269,7 +269,7 @@ impl Mouse {
         state: &State,
         under: Under<'_>,
         (to, button): (Pos2, PointerButton),
-        requests: &mut Vec<Request>,
+        requests: &mut Requests,
         picks: &mut Vec<(Pos2, Purpose)>,
     ) {
         match &mut self.drag {
@@ -299,7 +299,7 @@ impl Mouse {
     }
 
     /// Moves the camera by the keys that are held with the right button.
-    fn fly(&mut self, ui: &Ui, drag: Drag, state: &State, requests: &mut Vec<Request>) {
+    fn fly(&mut self, ui: &Ui, drag: Drag, state: &State, requests: &mut Requests) {
         let held = |key| ui.input(|input| f64::from(u8::from(input.key_down(key))));
         let along = |back, forth| held(forth) - held(back);
         let way = DVec3::new(along(Key::A, Key::D), along(Key::Q, Key::E), along(Key::W, Key::S));
@@ -327,7 +327,7 @@ impl Mouse {
         ui.ctx().request_repaint();
     }
 
-    fn wheel(&mut self, ui: &Ui, state: &State, under: Under<'_>, requests: &mut Vec<Request>) {
+    fn wheel(&mut self, ui: &Ui, state: &State, under: Under<'_>, requests: &mut Requests) {
         let Under { rect, size, hit, .. } = under;
         let (notches, moved, at) = ui.input(|input| {
             let notches = input.events.iter().map(notches).sum::<f64>();

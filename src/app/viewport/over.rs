@@ -1,11 +1,12 @@
 //! Overlays of the picture: the outline of the selection, marks of lights, axes.
 
-use egui::{Pos2, Rect, Response, Ui};
+use egui::{Pos2, Rect, Response, Stroke, Ui};
 
 use super::gizmo::{Gizmo, Grab};
 use super::marks::Projection;
-use super::{Purpose, Viewport, axes, helpers, marks, overlay, picking, placeholders};
+use super::{Purpose, Viewport, axes, helpers, marks, picking};
 use crate::app::actions::{Also, Request};
+use crate::app::drawing::border::Border;
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::plate::plate_ui;
@@ -34,7 +35,7 @@ impl Viewport {
         for (width, color) in
             [(3.5, egui::Color32::from_black_alpha(170)), (1.5, egui::Color32::WHITE)]
         {
-            let stroke = egui::Stroke::new(width, color);
+            let stroke = Stroke::new(width, color);
             painter.circle_stroke(at, 6.0, stroke);
             for way in [egui::vec2(1.0, 0.0), egui::vec2(0.0, 1.0)] {
                 painter.line_segment([at + way * 6.0, at + way * 13.0], stroke);
@@ -57,16 +58,11 @@ impl Viewport {
         if let Some(area) = self.mouse.selection_box() {
             let accent = theme::accent_on_dark();
             let painter = ui.painter().with_clip_rect(rect);
-            let dark = egui::Color32::from_black_alpha(110);
+            let dark = Stroke::new(3.5, egui::Color32::from_black_alpha(110));
             let kind = egui::StrokeKind::Middle;
-            painter.rect_stroke(area, 0.0, egui::Stroke::new(3.5, dark), kind);
-            painter.rect(
-                area,
-                0.0,
-                accent.gamma_multiply(0.12),
-                egui::Stroke::new(1.5, accent),
-                kind,
-            );
+            painter.rect_stroke(area, 0.0, dark, kind);
+            let fill = accent.gamma_multiply(0.12);
+            painter.rect(area, 0.0, fill, Stroke::new(1.5, accent), kind);
         }
     }
 
@@ -158,7 +154,7 @@ impl Viewport {
         let Some((rect, _)) = self.place else { return };
         helpers::grid_ui(ui, state, projection, self.image.as_deref());
         helpers::dimensions_ui(ui, state, projection);
-        placeholders::show(ui, state, projection);
+        helpers::placeholders_ui(ui, state, projection);
         // Overlays are drawn from back to front: grid, boxes, outlines, marks, gizmo, axes.
         let first = state.outlined().first().copied();
         let [own, others] = &self.outline;
@@ -167,7 +163,7 @@ impl Viewport {
         let borders = [(others, accent.gamma_multiply(0.6)), (own, accent)];
         for (border, color) in borders {
             if let Some(border) = border.as_ref().filter(|it| Some(it.item) == first) {
-                overlay::border_ui(ui, rect, border, color);
+                border_ui(ui, rect, border, color);
             }
         }
         marks::show(ui, state, projection, &over.marks);
@@ -193,4 +189,20 @@ impl Viewport {
             ui.ctx().set_cursor_icon(egui::CursorIcon::Crosshair);
         }
     }
+}
+
+/// Draws the border of an item with a dark outer line, visible on any background.
+#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^24 pixels a side")]
+pub(super) fn border_ui(ui: &Ui, rect: Rect, border: &Border, color: egui::Color32) {
+    let pixel = rect.size() / egui::vec2(border.size.width as f32, border.size.height as f32);
+    let mut mesh = egui::Mesh::default();
+    let colors = [egui::Color32::from_black_alpha(160), color];
+    for (runs, color) in [&border.outer, &border.inner].into_iter().zip(colors) {
+        for run in runs {
+            let min = rect.min + egui::vec2(run.x as f32, run.y as f32) * pixel;
+            let size = egui::vec2(run.length as f32, 1.0) * pixel;
+            mesh.add_colored_rect(Rect::from_min_size(min, size), color);
+        }
+    }
+    ui.painter().with_clip_rect(rect).add(mesh);
 }

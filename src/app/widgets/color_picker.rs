@@ -205,7 +205,6 @@ fn square(ui: &Ui, rect: Rect, hsv: Hsv) {
     cursor(ui, rect);
 }
 
-/// Draws the bar of hues.
 fn bar(ui: &Ui, rect: Rect, hsv: Hsv) {
     let full = |hue: f64| shown(Hsv { hue, saturation: 1.0, value: 1.0 }.color());
     ui.painter().add(gradient(rect, [36, 1], |x, _| full(x)));

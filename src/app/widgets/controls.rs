@@ -31,6 +31,24 @@ pub(crate) fn put_text(ui: &Ui, rect: Rect, galley: Arc<Galley>, color: Color32)
     ui.painter().galley_with_override_text_color(at, galley, color);
 }
 
+/// Draws a line of text at the right of `rect`, vertically centred.
+pub(crate) fn right_text(ui: &Ui, rect: Rect, value: &str, style: TextStyle, color: Color32) {
+    let galley = text(ui, value, style, rect.width());
+    put_text(ui, rect.with_min_x(rect.right() - galley.size().x), galley, color);
+}
+
+/// Draws the background of a row that is on or under the pointer. Returns the colour of its text.
+pub(crate) fn row_ground(ui: &Ui, row: &Response, on: bool) -> Color32 {
+    let visuals = ui.visuals();
+    let (fill, ink) = match (on, row.hovered()) {
+        (true, _) => (visuals.selection.bg_fill, visuals.selection.stroke.color),
+        (false, true) => (visuals.widgets.hovered.bg_fill, visuals.text_color()),
+        (false, false) => (Color32::TRANSPARENT, visuals.text_color()),
+    };
+    ui.painter().rect_filled(row.rect, 3.0, fill);
+    ink
+}
+
 /// Shows a part of a panel that can be folded.
 pub(crate) fn section(ui: &mut Ui, title: &'static str, open: bool, add: impl FnOnce(&mut Ui)) {
     regions::begin(ui, ("section", ui.layer_id(), title));
@@ -48,7 +66,7 @@ pub(crate) fn section(ui: &mut Ui, title: &'static str, open: bool, add: impl Fn
     let line = Stroke::new(1.0, theme::line(visuals));
     ui.painter().hline(rect.x_range(), rect.top() + 0.5, line);
     let chevron = Rect::from_min_size(rect.min, vec2(10.0, rect.height()));
-    let icon = if is_open { Icon::Down } else { Icon::Right };
+    let icon = if is_open { Icon::DOWN } else { Icon::RIGHT };
     icon.paint(ui.painter(), chevron, 8.0, color);
     let left = rect.with_min_x(rect.left() + 16.0);
     put_text(ui, left, text(ui, title, TextStyle::Body, left.width()), color);
@@ -101,11 +119,8 @@ pub(crate) fn fact(ui: &mut Ui, label: &str, value: &str) {
 /// A switch with a tick, as wide as the panel.
 #[derive(Clone, Debug)]
 pub(crate) struct Switch<'a> {
-    /// Its label.
     pub(crate) label: &'a str,
-    /// Its key, if any.
     pub(crate) key: Option<String>,
-    /// Whether it is on.
     pub(crate) on: bool,
     /// Whether it can be clicked.
     pub(crate) enabled: bool,
@@ -151,7 +166,7 @@ fn tick_box(ui: &Ui, rect: Rect, on: bool, enabled: bool) {
     let painter = ui.painter();
     if on {
         painter.rect_filled(rect, 3.0, fade(visuals.selection.bg_fill));
-        Icon::Tick.paint(painter, rect, 10.0, fade(visuals.selection.stroke.color));
+        Icon::TICK.paint(painter, rect, 10.0, fade(visuals.selection.stroke.color));
     } else {
         painter.rect_filled(rect, 3.0, fade(visuals.extreme_bg_color));
     }
@@ -159,7 +174,6 @@ fn tick_box(ui: &Ui, rect: Rect, on: bool, enabled: bool) {
     painter.rect_stroke(rect, 3.0, line, StrokeKind::Inside);
 }
 
-/// Returns the width of a key cap.
 pub(crate) fn key_width(ui: &Ui, key: &str) -> f32 {
     let font = TextStyle::Monospace.resolve(ui.style());
     let galley = ui.painter().layout_no_wrap(key.to_owned(), font, Color32::WHITE);
@@ -185,13 +199,10 @@ pub(crate) fn key_cap(ui: &Ui, at: egui::Pos2, key: &str, enabled: bool) -> f32 
 /// One of several options that exclude one another.
 #[derive(Clone, Debug)]
 pub(crate) struct Choice<'a> {
-    /// Its name.
     pub(crate) label: &'a str,
     /// Its name for screen readers.
     pub(crate) name: String,
-    /// The key that chooses it.
     pub(crate) key: Option<String>,
-    /// Whether it is chosen.
     pub(crate) on: bool,
     /// The reason why it cannot be chosen, if any.
     pub(crate) refused: Option<String>,
@@ -216,6 +227,37 @@ pub(crate) fn choices(ui: &mut Ui, choices: &[Choice<'_>]) -> Option<usize> {
 pub(crate) fn choices_in_rows(ui: &mut Ui, choices: &[Choice<'_>]) -> Option<usize> {
     let columns = columns(ui, choices);
     choices_in(ui, choices, columns)
+}
+
+/// Shows options with values and hints in one row. `of` names the group for screen readers, and
+/// `now` is the chosen value. Returns the value of an option that was clicked.
+pub(crate) fn choose<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    of: &str,
+    now: T,
+    all: &[(impl AsRef<str>, T, impl AsRef<str>)],
+) -> Option<T> {
+    choices(ui, &options(of, now, all)).map(|clicked| all[clicked].1)
+}
+
+/// Shows options as [`choose`] does, in as many rows as their labels need.
+pub(crate) fn choose_in_rows<T: Copy + PartialEq>(
+    ui: &mut Ui,
+    of: &str,
+    now: T,
+    all: &[(impl AsRef<str>, T, impl AsRef<str>)],
+) -> Option<T> {
+    choices_in_rows(ui, &options(of, now, all)).map(|clicked| all[clicked].1)
+}
+
+fn options<'a, T: Copy + PartialEq>(
+    of: &str,
+    now: T,
+    all: &'a [(impl AsRef<str>, T, impl AsRef<str>)],
+) -> Vec<Choice<'a>> {
+    all.iter()
+        .map(|(label, value, hint)| Choice::new(of, label.as_ref(), *value == now, hint.as_ref()))
+        .collect()
 }
 
 fn choices_in(ui: &mut Ui, choices: &[Choice<'_>], columns: usize) -> Option<usize> {

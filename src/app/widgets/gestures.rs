@@ -11,7 +11,6 @@ use marraztu_core::edit::Gesture;
 
 /// Returns the gesture of a change to this widget's value: part of a drag while a mouse button is
 /// down, whole for a typed value or an arrow key.
-#[must_use]
 pub fn of(response: &Response) -> Gesture {
     let pressing = |pointer: &egui::PointerState| pointer.any_down() || pointer.any_released();
     if response.ctx.input(|input| pressing(&input.pointer)) {

@@ -5,121 +5,72 @@ use egui::{Align2, Color32, FontId, Painter, Rect};
 use crate::app::theme;
 use marraztu_core::scene::{ItemId, Light, Scene};
 
-/// An icon.
+/// An icon: the code point of a symbol in `assets/icons.ttf`, which `assets/icons.py` makes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Icon {
-    /// An object.
-    Object,
-    /// A part of an object.
-    Part,
-    /// A camera.
-    Camera,
-    /// A light, by the code point of its kind.
-    Light(&'static str),
-    /// Visible.
-    Eye,
-    /// Hidden.
-    EyeClosed,
-    /// Locked.
-    Lock,
-    /// Not locked.
-    LockOpen,
-    /// A light that is on.
-    On,
-    /// A light that is off.
-    Off,
-    /// Add.
-    Plus,
-    /// Duplicate.
-    Copy,
-    /// Rename.
-    Pen,
-    /// Delete.
-    Bin,
-    /// Undo.
-    Undo,
-    /// Redo.
-    Redo,
-    /// Search.
-    Search,
-    /// The loupe.
-    Loupe,
-    /// Up.
-    Up,
-    /// Down.
-    Down,
-    /// To the left.
-    Left,
-    /// To the right, or folded.
-    Right,
-    /// On, or done.
-    Tick,
-    /// A refusal or an error.
-    Warning,
-    /// A notice.
-    Info,
-    /// The outline.
-    List,
-    /// The switches of the view.
-    Switches,
-    /// The properties.
-    Properties,
-}
+pub(crate) struct Icon(&'static str);
 
 impl Icon {
-    /// Returns the icon of an item.
+    pub(crate) const OBJECT: Self = Self("\u{f720}");
+    pub(crate) const PART: Self = Self("\u{e86b}");
+    pub(crate) const CAMERA: Self = Self("\u{e04b}");
+    /// Visible.
+    pub(crate) const EYE: Self = Self("\u{e8f4}");
+    /// Hidden.
+    pub(crate) const EYE_CLOSED: Self = Self("\u{e8f5}");
+    pub(crate) const LOCK: Self = Self("\u{e899}");
+    /// Not locked.
+    pub(crate) const LOCK_OPEN: Self = Self("\u{e898}");
+    /// A light that is on.
+    pub(crate) const ON: Self = Self("\u{e837}");
+    /// A light that is off.
+    pub(crate) const OFF: Self = Self("\u{e836}");
+    /// Add.
+    pub(crate) const PLUS: Self = Self("\u{e145}");
+    /// Duplicate.
+    pub(crate) const COPY: Self = Self("\u{e14d}");
+    /// Rename.
+    pub(crate) const PEN: Self = Self("\u{f097}");
+    /// Delete.
+    pub(crate) const BIN: Self = Self("\u{e92e}");
+    pub(crate) const UNDO: Self = Self("\u{e166}");
+    pub(crate) const REDO: Self = Self("\u{e15a}");
+    pub(crate) const SEARCH: Self = Self("\u{ef7a}");
+    pub(crate) const LOUPE: Self = Self("\u{e8ff}");
+    pub(crate) const UP: Self = Self("\u{e316}");
+    pub(crate) const DOWN: Self = Self("\u{e313}");
+    pub(crate) const LEFT: Self = Self("\u{e314}");
+    /// To the right, or folded.
+    pub(crate) const RIGHT: Self = Self("\u{e315}");
+    /// On, or done.
+    pub(crate) const TICK: Self = Self("\u{e668}");
+    /// A refusal or an error.
+    pub(crate) const WARNING: Self = Self("\u{f083}");
+    /// A notice.
+    pub(crate) const INFO: Self = Self("\u{e88e}");
+    /// The outline.
+    pub(crate) const LIST: Self = Self("\u{e896}");
+    /// The switches of the view.
+    pub(crate) const SWITCHES: Self = Self("\u{e9f6}");
+    pub(crate) const PROPERTIES: Self = Self("\u{e429}");
+
     pub(crate) fn of(scene: &Scene, id: ItemId) -> Self {
         match id {
-            ItemId::Object(_) => Self::Object,
-            ItemId::Camera(_) => Self::Camera,
-            ItemId::Light(id) => scene.lights.get(id).map_or(Self::Off, Self::of_light),
+            ItemId::Object(_) => Self::OBJECT,
+            ItemId::Camera(_) => Self::CAMERA,
+            ItemId::Light(id) => scene.lights.get(id).map_or(Self::OFF, Self::of_light),
         }
     }
 
     /// Returns the icon of a light.
     pub(crate) const fn of_light(light: &Light) -> Self {
-        Self::Light(light.kind.info().icon)
+        Self(light.kind.info().icon)
     }
 
     /// Draws the icon in the middle of `rect`, `side` points wide.
     pub(crate) fn paint(self, painter: &Painter, rect: Rect, side: f32, color: Color32) {
         // Symbols fill about 3/4 of their em square.
         let font = FontId::new((side * 4.0 / 3.0).round(), theme::icon_family());
-        painter.text(rect.center(), Align2::CENTER_CENTER, self.symbol(), font, color);
-    }
-
-    /// Returns the code point in the font, `assets/icons.ttf`, which `assets/icons.py` makes.
-    const fn symbol(self) -> &'static str {
-        match self {
-            Self::Object => "\u{f720}",
-            Self::Part => "\u{e86b}",
-            Self::Camera => "\u{e04b}",
-            Self::Light(code_point) => code_point,
-            Self::Eye => "\u{e8f4}",
-            Self::EyeClosed => "\u{e8f5}",
-            Self::Lock => "\u{e899}",
-            Self::LockOpen => "\u{e898}",
-            Self::On => "\u{e837}",
-            Self::Off => "\u{e836}",
-            Self::Plus => "\u{e145}",
-            Self::Copy => "\u{e14d}",
-            Self::Pen => "\u{f097}",
-            Self::Bin => "\u{e92e}",
-            Self::Undo => "\u{e166}",
-            Self::Redo => "\u{e15a}",
-            Self::Search => "\u{ef7a}",
-            Self::Loupe => "\u{e8ff}",
-            Self::Up => "\u{e316}",
-            Self::Down => "\u{e313}",
-            Self::Left => "\u{e314}",
-            Self::Right => "\u{e315}",
-            Self::Tick => "\u{e668}",
-            Self::Warning => "\u{f083}",
-            Self::Info => "\u{e88e}",
-            Self::List => "\u{e896}",
-            Self::Switches => "\u{e9f6}",
-            Self::Properties => "\u{e429}",
-        }
+        painter.text(rect.center(), Align2::CENTER_CENTER, self.0, font, color);
     }
 }
 

@@ -27,7 +27,6 @@ const PADDING: f32 = 3.0;
 
 const LETTERS: [&str; 3] = ["X", "Y", "Z"];
 
-/// A field for a number.
 #[derive(Clone, Debug)]
 pub(crate) struct Number<'a> {
     name: String,

@@ -202,10 +202,7 @@ pub(crate) fn follow_focus(ui: &Ui) {
         && ui.min_rect().expand(2.0).contains(response.rect.center());
     if here && ui.data(|data| data.get_temp(id)) != Some(focused) {
         ui.data_mut(|data| data.insert_temp(id, focused));
-        ui.scroll_to_rect_animation(
-            response.rect.expand(4.0),
-            None,
-            egui::style::ScrollAnimation::none(),
-        );
+        let at_once = egui::style::ScrollAnimation::none();
+        ui.scroll_to_rect_animation(response.rect.expand(4.0), None, at_once);
     }
 }

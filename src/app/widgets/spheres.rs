@@ -29,7 +29,6 @@ use marraztu_render::plan_frame;
 /// The supersampling factor per axis.
 const FINER: usize = 2;
 
-/// The material that a sphere shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Sphere {
     /// One of the nineteen presets.

@@ -20,6 +20,14 @@ pub(crate) fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
+/// Names one thing, or counts several: "cow.obj", "3 models".
+pub(crate) fn one_or_count<T>(all: &[T], kind: &str, name: impl Fn(&T) -> String) -> String {
+    match all {
+        [one] => name(one),
+        _ => format!("{} {kind}", all.len()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -43,7 +43,7 @@ impl PartialEq for Derived {
 impl Eq for Derived {}
 
 /// The width and height of a picture in pixels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Size {
     /// The number of pixels in a row.
     pub width: usize,

@@ -10,14 +10,12 @@ use crate::app::theme;
 use crate::app::widgets::controls::{focus_ring, put_text, text};
 use crate::app::widgets::icons::Icon;
 
-/// The height of the list.
 const HEIGHT: f32 = 264.0;
 
 /// The widths of the columns for size and date.
 const SIZE: f32 = 70.0;
 const DATE: f32 = 90.0;
 
-/// A column of the list.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Column {
     #[default]
@@ -54,9 +52,7 @@ impl Column {
 pub(crate) struct Look {
     /// Whether to list files with names that begin with a dot.
     pub(crate) hidden: bool,
-    /// The column to sort by.
     pub(crate) by: Column,
-    /// Whether the order is reversed.
     pub(crate) reversed: bool,
 }
 
@@ -130,7 +126,7 @@ impl Browser {
             let end = rect.left() + theme::GAP + label.size().x;
             put_text(ui, rect.with_min_x(rect.left() + theme::GAP), label, color);
             if by {
-                let icon = if self.look.reversed { Icon::Up } else { Icon::Down };
+                let icon = if self.look.reversed { Icon::UP } else { Icon::DOWN };
                 let place =
                     Rect::from_center_size(pos2(end + 9.0, rect.center().y), vec2(12.0, 12.0));
                 icon.paint(ui.painter(), place, 10.0, color);

@@ -8,11 +8,12 @@ use std::sync::Arc;
 
 use egui::ColorImage;
 
-use super::message::{DrawnHead, Pictures, Reply, Request, Wanted, read, write};
-use super::{Asking, Due, Pick, Shared, Work};
+use super::message::{Pictures, Reply, Request, Wanted, read, write};
+use super::{Asking, Due, Pick, Shared};
 use crate::app::drawing::dial::{DialFigures, Dialled};
 use crate::app::drawing::snapshot::Snapshot;
 use crate::app::drawing::viewport_renderer::Drawn;
+use marraztu_core::accuracy::Shot;
 use marraztu_core::base::image::Picture;
 use marraztu_io::scene_to_message;
 
@@ -44,7 +45,7 @@ impl<P> Elsewhere<P> {
         if desk.busy {
             return None;
         }
-        let Due::Now(Work::Asked(asking)) = shared.due(&mut desk) else { return None };
+        let Due::Answer(asking) = shared.due(&mut desk) else { return None };
         drop(desk);
         let Asking { picks, border, ideal, wanted } = *asking;
         let Ok(written) = wanted.as_ref().map(|wanted| self.written(wanted)).transpose() else {
@@ -57,31 +58,10 @@ impl<P> Elsewhere<P> {
     }
 
     fn written(&self, wanted: &Snapshot) -> Result<Wanted, String> {
-        let Snapshot {
-            scene,
-            view,
-            settings,
-            size,
-            moving,
-            coarse,
-            budget,
-            refined,
-            dial,
-            explain,
-            outlined,
-        } = wanted;
-        let before = self.sent.as_ref().map(|sent| &sent.scene);
-        Ok(Wanted {
-            scene: scene_to_message((scene, view, settings), before)?,
-            size: *size,
-            moving: *moving,
-            coarse: *coarse,
-            budget: *budget,
-            refined: *refined,
-            dial: *dial,
-            explain: *explain,
-            outlined: outlined.clone(),
-        })
+        let Snapshot { shot: Shot { scene, view, settings, size }, options } = wanted;
+        let before = self.sent.as_ref().map(|sent| &sent.shot.scene);
+        let scene = scene_to_message((scene, view, settings), before)?;
+        Ok(Wanted { scene, size: *size, options: options.clone() })
     }
 
     /// Takes results; `None` if the worker has failed and was replaced.
@@ -142,16 +122,14 @@ impl<P> Elsewhere<P> {
 /// Returns what the figures of the dial depend on, as
 /// [`IdleDial`](crate::app::drawing::dial::IdleDial) does.
 fn dialled(snapshot: &Snapshot) -> Option<Dialled> {
-    let Snapshot { scene, view, settings, size, dial, .. } = snapshot;
-    dial.map(|wish| Dialled::of((scene, view), settings, *size, wish))
+    snapshot.options.dial.map(|wish| Dialled::of(&snapshot.shot, wish))
 }
 
-impl DrawnHead {
-    /// Returns the picture with its pixels.
-    fn with_pixels(self, pictures: &mut Pictures<'_>) -> Option<Drawn> {
-        let Self { size, time, triangles, reduction, lost, refined, changes } = self;
+impl Drawn {
+    fn with_pixels(mut self, pictures: &mut Pictures<'_>) -> Option<Self> {
+        let size = self.image.size;
         let pixels = bytemuck::pod_collect_to_vec(pictures.take(size)?);
-        let image = Arc::new(ColorImage::new(size, pixels));
-        Some(Drawn { image, time, triangles, reduction, lost, refined, changes })
+        self.image = Arc::new(ColorImage::new(size, pixels));
+        Some(self)
     }
 }

@@ -4,22 +4,18 @@
 //! A message is a JSON head and the pixels of its pictures. The head's length comes first, as 4
 //! bytes, least significant first.
 
-use std::time::Duration;
-
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 use crate::app::drawing::border::Border;
-use crate::app::drawing::dial::DialWish;
-use crate::app::drawing::reduction::Reduction;
-use marraztu_core::accuracy::Samples;
+use crate::app::drawing::snapshot::DrawOptions;
+use crate::app::drawing::viewport_renderer::Drawn;
 use marraztu_core::base::image::Size;
 use marraztu_core::scene::ItemId;
 use marraztu_lab::cost::Explained;
 use marraztu_lab::dial::Figures;
+use marraztu_render::Hit;
 use marraztu_render::screen::coverage::PixelBox;
-use marraztu_render::{Damage, Hit};
 
-/// The requests of a window.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub(super) struct Request {
     pub(super) picks: Vec<[usize; 2]>,
@@ -34,13 +30,7 @@ pub(super) struct Request {
 pub(super) struct Wanted {
     pub(super) scene: String,
     pub(super) size: Size,
-    pub(super) moving: bool,
-    pub(super) coarse: bool,
-    pub(super) budget: Duration,
-    pub(super) refined: Option<Samples>,
-    pub(super) dial: Option<DialWish>,
-    pub(super) explain: bool,
-    pub(super) outlined: Vec<ItemId>,
+    pub(super) options: DrawOptions,
 }
 
 /// Results of a worker. Pictures follow in the order of their fields.
@@ -49,26 +39,14 @@ pub(super) struct Reply {
     /// Whether all requests are answered.
     pub(super) done: bool,
     pub(super) border: Option<Border>,
-    pub(super) drawn: Option<DrawnHead>,
-    pub(super) refined: Option<DrawnHead>,
+    pub(super) drawn: Option<Drawn>,
+    pub(super) refined: Option<Drawn>,
     pub(super) outline: Option<[Option<Border>; 2]>,
     pub(super) explained: Option<Explained>,
     pub(super) dial: Option<Vec<Figures>>,
     pub(super) ideal: Option<(PixelBox, Size)>,
     pub(super) picked: Vec<Option<Hit>>,
     pub(super) failed: bool,
-}
-
-/// A [`Drawn`](crate::app::drawing::viewport_renderer::Drawn) without its pixels.
-#[derive(Debug, Serialize, Deserialize)]
-pub(super) struct DrawnHead {
-    pub(super) size: [usize; 2],
-    pub(super) time: Duration,
-    pub(super) triangles: usize,
-    pub(super) reduction: Reduction,
-    pub(super) lost: Option<f64>,
-    pub(super) refined: Option<Samples>,
-    pub(super) changes: Damage,
 }
 
 /// The number of bytes of the length.

@@ -192,8 +192,7 @@ impl<P: Copy + Send + 'static> Worker<P> {
 
     /// Returns whether the worker is busy or has requests.
     pub(crate) fn is_drawing(&self) -> bool {
-        let desk = self.shared.lock();
-        desk.busy || desk.has_work()
+        self.shared.lock().is_answering()
     }
 
     /// Returns how long the requested picture has been in progress, if it is not finished.
@@ -201,35 +200,28 @@ impl<P: Copy + Send + 'static> Worker<P> {
         self.shared.lock().begun.map(|begun| begun.elapsed())
     }
 
-    /// Returns the last snapshot requested.
     pub(crate) const fn last(&self) -> Option<&Snapshot> {
         self.last.as_ref()
     }
 
     /// Requests the item at a pixel of the last picture.
     pub(crate) fn pick(&self, pick: Pick<P>) {
-        let mut desk = self.shared.lock();
-        desk.picks.push_back(pick);
-        self.shared.disturbed.store(true, Ordering::Relaxed);
-        drop(desk);
-        self.shared.changed.notify_all();
+        self.ask(|desk| desk.picks.push_back(pick));
     }
 
     /// Requests the border of an item in the last picture.
     pub(crate) fn border(&self, item: ItemId) {
-        let mut desk = self.shared.lock();
-        desk.border = Some(item);
-        self.shared.disturbed.store(true, Ordering::Relaxed);
-        drop(desk);
-        self.shared.changed.notify_all();
+        self.ask(|desk| desk.border = Some(item));
     }
 
     /// Requests a window of the ideal of the last picture.
     pub(crate) fn ideal(&self, window: PixelBox) {
-        let mut desk = self.shared.lock();
-        desk.ideal = Some(window);
+        self.ask(|desk| desk.ideal = Some(window));
+    }
+
+    fn ask(&self, request: impl FnOnce(&mut Desk<P>)) {
+        request(&mut self.shared.lock());
         self.shared.disturbed.store(true, Ordering::Relaxed);
-        drop(desk);
         self.shared.changed.notify_all();
     }
 
@@ -243,24 +235,22 @@ impl<P: Copy + Send + 'static> Worker<P> {
         if let Place::Here(here) = &self.place {
             here.borrow_mut().work(&self.shared);
         }
-        let mut desk = self.shared.lock();
-        std::mem::replace(&mut desk.news, News::none())
+        std::mem::take(&mut self.shared.lock().news)
     }
 
     /// Waits until all requests are answered.
     pub(crate) fn wait(&self) {
-        let mut desk = self.shared.lock();
-        while desk.busy || desk.has_work() {
-            desk = self.shared.changed.wait(desk).unwrap_or_else(PoisonError::into_inner);
-        }
+        self.wait_while(Desk::is_answering);
     }
 
     /// Waits until all requests are answered and nothing is left to refine.
     pub(crate) fn wait_until_refined(&self) {
-        let mut desk = self.shared.lock();
-        while desk.busy || desk.has_work() || !desk.settled {
-            desk = self.shared.changed.wait(desk).unwrap_or_else(PoisonError::into_inner);
-        }
+        self.wait_while(|desk| desk.is_answering() || !desk.settled);
+    }
+
+    fn wait_while(&self, busy: impl Fn(&Desk<P>) -> bool) {
+        // A poisoned lock means that the thread has ended.
+        drop(self.shared.changed.wait_while(self.shared.lock(), |desk| busy(desk)));
     }
 }
 
@@ -278,19 +268,11 @@ impl<P> Drop for Worker<P> {
     }
 }
 
-impl<P> News<P> {
-    const fn none() -> Self {
-        Self {
-            border: None,
-            drawn: None,
-            refined: None,
-            outline: None,
-            explained: None,
-            dial: None,
-            ideal: None,
-            picked: Vec::new(),
-            failed: false,
-        }
+impl<P> Default for News<P> {
+    fn default() -> Self {
+        let (border, drawn, refined, outline) = (None, None, None, None);
+        let (explained, dial, ideal, picked, failed) = (None, None, None, Vec::new(), false);
+        Self { border, drawn, refined, outline, explained, dial, ideal, picked, failed }
     }
 }
 
@@ -301,13 +283,17 @@ impl<P> Desk<P> {
             || self.border.is_some()
             || self.ideal.is_some()
     }
+
+    fn is_answering(&self) -> bool {
+        self.busy || self.has_work()
+    }
 }
 
 impl<P> Shared<P> {
     fn new(is_awaited: fn() -> bool) -> Arc<Self> {
         let (wanted, picks, border, ideal) = (None, VecDeque::new(), None, None);
         let (busy, begun, closed) = (false, None, false);
-        let (settled, quiet_at, news) = (true, Instant::now(), News::none());
+        let (settled, quiet_at, news) = (true, Instant::now(), News::default());
         let desk =
             Desk { wanted, picks, border, ideal, news, busy, begun, closed, settled, quiet_at };
         Arc::new(Self {
@@ -330,6 +316,12 @@ impl<P> Shared<P> {
         self.disturbed.store(true, Ordering::Relaxed);
     }
 
+    /// Returns whether work that nobody waits for goes on; asked between tiles.
+    fn goes_on_until(&self, end: &AtomicBool) -> bool {
+        let is_over = [end, &self.over].iter().any(|flag| flag.load(Ordering::Relaxed));
+        !is_over && !(self.is_awaited)()
+    }
+
     /// Returns the time until there is work, or `None` if there is none before a request.
     fn rest(&self) -> Option<Duration> {
         let desk = self.lock();
@@ -341,7 +333,7 @@ impl<P> Shared<P> {
     }
 
     /// Waits for work or for the time to refine; `None` if the desk is closed.
-    fn next(&self) -> Option<Work<P>> {
+    fn next(&self) -> Option<Due<P>> {
         let mut desk = self.lock();
         (desk.busy, desk.begun) = (false, None);
         self.changed.notify_all();
@@ -350,12 +342,12 @@ impl<P> Shared<P> {
                 return None;
             }
             desk = match self.due(&mut desk) {
-                Due::Now(work) => return Some(work),
-                Due::In(rest) => {
+                Due::Wait(rest) => {
                     let waited = self.changed.wait_timeout(desk, rest);
                     waited.unwrap_or_else(PoisonError::into_inner).0
                 }
                 Due::Never => self.changed.wait(desk).unwrap_or_else(PoisonError::into_inner),
+                due => return Some(due),
             };
         }
     }
@@ -367,12 +359,12 @@ impl<P> Shared<P> {
             desk.busy = true;
             desk.begun = desk.wanted.is_some().then(Instant::now);
             self.newer.store(false, Ordering::Relaxed);
-            return Due::Now(Work::Asked(Box::new(Asking {
+            return Due::Answer(Box::new(Asking {
                 picks: std::mem::take(&mut desk.picks),
                 border: desk.border.take(),
                 ideal: desk.ideal.take(),
                 wanted: desk.wanted.take(),
-            })));
+            }));
         }
         // Without anything to refine, there is nothing to do until a request or the end.
         if desk.settled {
@@ -381,10 +373,10 @@ impl<P> Shared<P> {
         // Refinement waits for a quiet moment, unless a request comes earlier.
         let rest = desk.quiet_at.saturating_duration_since(Instant::now());
         if !rest.is_zero() {
-            return Due::In(rest);
+            return Due::Wait(rest);
         }
         self.disturbed.store(false, Ordering::Relaxed);
-        Due::Now(Work::Refine)
+        Due::Refine
     }
 }
 
@@ -397,26 +389,21 @@ struct Asking<P> {
     wanted: Option<Snapshot>,
 }
 
-/// The next task of the thread.
-enum Work<P> {
+/// The next task of the thread, or the time until then.
+enum Due<P> {
     /// Answer requests.
-    Asked(Box<Asking<P>>),
+    Answer(Box<Asking<P>>),
     /// Refine the last picture by a step.
     Refine,
-}
-
-/// When there is work.
-enum Due<P> {
-    Now(Work<P>),
-    In(Duration),
+    Wait(Duration),
     Never,
 }
 
 /// Draws pictures and answers requests until the desk is closed.
 fn work<P: Copy + Send>(shared: &Shared<P>, wake: &impl Fn()) {
     let mut painter = Painter::new();
-    while let Some(work) = shared.next() {
-        painter.work(shared, wake, work);
+    while let Some(due) = shared.next() {
+        painter.work(shared, wake, due);
     }
 }
 
@@ -425,12 +412,11 @@ impl Here {
     fn work<P: Copy + Send>(&mut self, shared: &Shared<P>) {
         let Self { painter, wake } = self;
         let due = shared.due(&mut shared.lock());
-        match due {
-            // The picture is shown before it is refined.
-            Due::Now(work) => painter.work(shared, wake, work),
-            Due::In(_) => {}
-            Due::Never => return,
+        if matches!(due, Due::Never) {
+            return;
         }
+        // The picture is shown before it is refined.
+        painter.work(shared, wake, due);
         let mut desk = shared.lock();
         (desk.busy, desk.begun) = (false, None);
         drop(desk);
@@ -451,15 +437,16 @@ impl Painter {
         Self { renderer: ViewportRenderer::new(Instant::now), last: None, outlined: Vec::new() }
     }
 
-    fn work<P: Copy + Send>(&mut self, shared: &Shared<P>, wake: &impl Fn(), work: Work<P>) {
-        let Self { renderer: painter, last, outlined } = self;
-        let Asking { picks, border, ideal, wanted } = match work {
-            Work::Asked(asking) => *asking,
-            Work::Refine => return refine(shared, wake, painter, last.as_ref()),
+    fn work<P: Copy + Send>(&mut self, shared: &Shared<P>, wake: &impl Fn(), due: Due<P>) {
+        let Asking { picks, border, ideal, wanted } = match due {
+            Due::Answer(asking) => *asking,
+            Due::Refine => return self.refine(shared, wake),
+            Due::Wait(_) | Due::Never => return,
         };
+        let Self { renderer, last, .. } = self;
         // Picks and borders refer to the picture on screen, so they are answered before it changes.
-        let picked: Vec<_> = picks.into_iter().map(|pick| (pick, painter.hit(pick.at))).collect();
-        let border = border.and_then(|item| painter.border(item));
+        let picked: Vec<_> = picks.into_iter().map(|pick| (pick, renderer.hit(pick.at))).collect();
+        let border = border.and_then(|item| renderer.border(item, &[item]));
         if !picked.is_empty() || border.is_some() {
             let mut desk = shared.lock();
             desk.news.picked.extend(picked);
@@ -468,101 +455,90 @@ impl Painter {
             wake();
         }
         if let (Some(window), Some(last), None) = (ideal, &*last, &wanted) {
-            let goes_on = || {
-                !shared.newer.load(Ordering::Relaxed)
-                    && !shared.over.load(Ordering::Relaxed)
-                    && !(shared.is_awaited)()
-            };
-            let drawn = catch_unwind(AssertUnwindSafe(|| painter.ideal(last, window, &goes_on)));
+            let goes_on = || shared.goes_on_until(&shared.newer);
+            let drawn = catch_unwind(AssertUnwindSafe(|| renderer.ideal(last, window, &goes_on)));
             if let Ok(Some(picture)) = drawn {
                 shared.lock().news.ideal = Some((window, picture));
                 wake();
             }
         }
         let Some(wanted) = wanted else { return };
-        if !draw(shared, wake, painter, &wanted, outlined) {
+        if !self.draw(shared, wake, &wanted) {
             // A renderer that panicked may hold inconsistent buffers, so it is replaced.
-            *painter = ViewportRenderer::new(Instant::now);
-            *last = None;
+            self.renderer = ViewportRenderer::new(Instant::now);
+            self.last = None;
             return;
         }
         shared.lock().settled = false;
         // The explanation comes after the picture, which it would delay.
-        if let Ok(Some(explained)) = catch_unwind(AssertUnwindSafe(|| painter.explain(&wanted))) {
+        let explain = || self.renderer.explain(&wanted);
+        if let Ok(Some(explained)) = catch_unwind(AssertUnwindSafe(explain)) {
             shared.lock().news.explained = Some(explained);
             wake();
         }
-        *last = Some(wanted);
+        self.last = Some(wanted);
     }
-}
 
-/// Draws a picture. Returns false if the renderer panicked: the fault costs one picture, not the
-/// user's work.
-fn draw<P: Copy + Send>(
-    shared: &Shared<P>,
-    wake: &impl Fn(),
-    painter: &mut ViewportRenderer,
-    wanted: &Snapshot,
-    outlined: &mut Vec<ItemId>,
-) -> bool {
-    // The renderer asks between tiles, without a lock.
-    let asked = || match shared.over.load(Ordering::Relaxed) {
-        true => Asked::Nothing,
-        false if shared.newer.load(Ordering::Relaxed) => Asked::Newer,
-        false => Asked::This,
-    };
-    let Ok(drawn) = catch_unwind(AssertUnwindSafe(|| painter.draw(wanted, &asked))) else {
-        shared.lock().news.failed = true;
-        wake();
-        return false;
-    };
-    let another = wanted.outlined != *outlined && !painter.was_given_up();
-    if drawn.is_some() || another {
-        // The outline is taken from this very picture, so it never lags behind.
-        let (first, others) = wanted.outlined.split_first().unzip();
-        let own = first.and_then(|item| painter.border(*item));
-        let others = others.filter(|others| !others.is_empty());
-        let others = others.and_then(|all| painter.border_of(*first?, all));
-        let outline = [own, others];
-        outlined.clone_from(&wanted.outlined);
-        let mut desk = shared.lock();
-        if drawn.is_some() {
-            (desk.news.drawn, desk.news.refined) = (drawn, None);
-        }
-        desk.news.outline = Some(outline);
-        drop(desk);
-        wake();
-    }
-    true
-}
-
-/// Refines the last picture by a step, unless a request interrupts it.
-fn refine<P: Copy + Send>(
-    shared: &Shared<P>,
-    wake: &impl Fn(),
-    painter: &mut ViewportRenderer,
-    last: Option<&Snapshot>,
-) {
-    let go_on = || {
-        !shared.disturbed.load(Ordering::Relaxed)
-            && !shared.over.load(Ordering::Relaxed)
-            && !(shared.is_awaited)()
-    };
-    let step = || last.map_or(Finer::Done, |last| painter.refine(last, &go_on));
-    match catch_unwind(AssertUnwindSafe(step)) {
-        Ok(Finer::Refined(drawn)) => {
-            shared.lock().news.refined = Some(*drawn);
+    /// Draws a picture. Returns false if the renderer panicked: the fault costs one picture, not the
+    /// user's work.
+    fn draw<P: Copy + Send>(
+        &mut self,
+        shared: &Shared<P>,
+        wake: &impl Fn(),
+        wanted: &Snapshot,
+    ) -> bool {
+        let Self { renderer, outlined, .. } = self;
+        // The renderer asks between tiles, without a lock.
+        let asked = || match shared.over.load(Ordering::Relaxed) {
+            true => Asked::Nothing,
+            false if shared.newer.load(Ordering::Relaxed) => Asked::Newer,
+            false => Asked::This,
+        };
+        let Ok(drawn) = catch_unwind(AssertUnwindSafe(|| renderer.draw(wanted, &asked))) else {
+            shared.lock().news.failed = true;
             wake();
-        }
-        Ok(Finer::Dial(figures)) => {
-            shared.lock().news.dial = Some(figures);
-            wake();
-        }
-        Ok(Finer::Disturbed | Finer::Measured) => {}
-        // If refinement fails, the unrefined picture remains on screen.
-        Ok(Finer::Done) | Err(_) => {
+            return false;
+        };
+        let another = wanted.options.outlined != *outlined && !renderer.was_given_up();
+        if drawn.is_some() || another {
+            // The outline is taken from this very picture, so it never lags behind.
+            let (first, others) = wanted.options.outlined.split_first().unzip();
+            let own = first.and_then(|item| renderer.border(*item, &[*item]));
+            let others = others.filter(|others| !others.is_empty());
+            let others = others.and_then(|all| renderer.border(*first?, all));
+            let outline = [own, others];
+            outlined.clone_from(&wanted.options.outlined);
             let mut desk = shared.lock();
-            desk.settled = !desk.has_work();
+            if drawn.is_some() {
+                (desk.news.drawn, desk.news.refined) = (drawn, None);
+            }
+            desk.news.outline = Some(outline);
+            drop(desk);
+            wake();
+        }
+        true
+    }
+
+    /// Refines the last picture by a step, unless a request interrupts it.
+    fn refine<P: Copy + Send>(&mut self, shared: &Shared<P>, wake: &impl Fn()) {
+        let Self { renderer, last, .. } = self;
+        let go_on = || shared.goes_on_until(&shared.disturbed);
+        let step = || last.as_ref().map_or(Finer::Done, |last| renderer.refine(last, &go_on));
+        match catch_unwind(AssertUnwindSafe(step)) {
+            Ok(Finer::Refined(drawn)) => {
+                shared.lock().news.refined = Some(*drawn);
+                wake();
+            }
+            Ok(Finer::Dial(figures)) => {
+                shared.lock().news.dial = Some(figures);
+                wake();
+            }
+            Ok(Finer::Disturbed | Finer::Measured) => {}
+            // If refinement fails, the unrefined picture remains on screen.
+            Ok(Finer::Done) | Err(_) => {
+                let mut desk = shared.lock();
+                desk.settled = !desk.has_work();
+            }
         }
     }
 }

@@ -2,10 +2,10 @@
 
 use std::time::Duration;
 
-use super::message::{DrawnHead, Reply, Request, Wanted, read, write};
+use super::message::{Reply, Request, Wanted, read, write};
 use super::{News, Pick, Worker};
 use crate::app::drawing::snapshot::Snapshot;
-use crate::app::drawing::viewport_renderer::Drawn;
+use marraztu_core::accuracy::Shot;
 use marraztu_core::scene::Scene;
 use marraztu_io::{Known, scene_of_message};
 
@@ -28,7 +28,6 @@ pub struct DrawingServer {
 impl DrawingServer {
     /// Prepares to draw. `is_awaited` returns whether a request waits, which interrupts the
     /// refinement of a picture; it is asked between tiles.
-    #[must_use]
     pub fn new(is_awaited: fn() -> bool) -> Self {
         let worker = Worker::here(|| {}, is_awaited);
         Self { worker, scene: None, is_stale: false, is_asked: false, has_failed: false }
@@ -54,8 +53,9 @@ impl DrawingServer {
         if let Some(wanted) = wanted {
             let snapshot = self.snapshot(wanted)?;
             // Unless objects arrive, none of their models is loaded again.
-            let before = self.scene.replace(snapshot.scene.clone());
-            self.is_stale &= before.is_some_and(|before| before.objects == snapshot.scene.objects);
+            let before = self.scene.replace(snapshot.shot.scene.clone());
+            self.is_stale &=
+                before.is_some_and(|before| before.objects == snapshot.shot.scene.objects);
             self.worker.draw(snapshot);
         }
         Some(())
@@ -65,19 +65,8 @@ impl DrawingServer {
         let before = self.scene.as_ref();
         let known = before.filter(|_| !self.is_stale).map(Known::of).unwrap_or_default();
         let (scene, view, settings) = scene_of_message(&wanted.scene, before, &known).ok()?;
-        Some(Snapshot {
-            scene,
-            view,
-            settings,
-            size: wanted.size,
-            moving: wanted.moving,
-            coarse: wanted.coarse,
-            budget: wanted.budget,
-            refined: wanted.refined,
-            dial: wanted.dial,
-            explain: wanted.explain,
-            outlined: wanted.outlined,
-        })
+        let shot = Shot { scene, view, settings, size: wanted.size };
+        Some(Snapshot { shot, options: wanted.options })
     }
 
     /// Notes that files have changed: the models of the next objects are loaded again.
@@ -103,8 +92,8 @@ impl DrawingServer {
             let reply = Reply {
                 done,
                 border,
-                drawn: drawn.as_ref().map(DrawnHead::of),
-                refined: refined.as_ref().map(DrawnHead::of),
+                drawn: drawn.clone(),
+                refined: refined.clone(),
                 outline,
                 explained: explained.as_deref().cloned(),
                 dial: dial.map(|dial| dial.figures),
@@ -117,23 +106,7 @@ impl DrawingServer {
     }
 
     /// Returns the time until there is work, or `None` if there is none before the next request.
-    #[must_use]
     pub fn rest(&self) -> Option<Duration> {
         if self.is_asked { Some(Duration::ZERO) } else { self.worker.shared.rest() }
-    }
-}
-
-impl DrawnHead {
-    fn of(drawn: &Drawn) -> Self {
-        let Drawn { image, time, triangles, reduction, lost, refined, changes } = drawn;
-        Self {
-            size: image.size,
-            time: *time,
-            triangles: *triangles,
-            reduction: *reduction,
-            lost: *lost,
-            refined: *refined,
-            changes: changes.clone(),
-        }
     }
 }

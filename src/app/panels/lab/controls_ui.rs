@@ -2,11 +2,11 @@
 
 use egui::{ProgressBar, RichText, ScrollArea, Ui};
 
-use crate::app::actions::{LabRequest, Request};
+use crate::app::actions::{LabRequest, Request, Requests};
 use crate::app::state::State;
 use crate::app::state::laboratory::{Compare, in_words};
 use crate::app::theme;
-use crate::app::widgets::controls::{Choice, Switch, choices, choices_in_rows, row};
+use crate::app::widgets::controls::{Switch, choose, choose_in_rows, row};
 use crate::app::widgets::number::Number;
 use crate::app::widgets::regions;
 use marraztu_core::accuracy::{AXES, Axis};
@@ -17,8 +17,7 @@ use marraztu_lab::picture_source::Reference;
 use marraztu_lab::report::{Budgets, Report, brief, capitalized, tabs};
 use marraztu_lab::suite::SuiteDetail;
 
-/// Shows the panel; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let area = ScrollArea::vertical().id_salt("what the laboratory is asked").auto_shrink(false);
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
         measure_ui(ui, state, requests);
@@ -37,7 +36,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 
 /// Shows the buttons that measure, or the progress.
 #[expect(clippy::cast_possible_truncation, reason = "a fraction from 0 to 1")]
-pub(super) fn measure_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(super) fn measure_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let lab = &state.lab;
     ui.horizontal(|ui| match lab.running {
         Some(fraction) => {
@@ -97,39 +96,33 @@ pub(super) fn age_ui(ui: &mut Ui, state: &State) {
     }
 }
 
-fn judge_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
-    let now = state.lab.measure;
-    let all: Vec<Choice<'_>> = Measure::ALL
-        .iter()
-        .zip([
-            ("RMSE", "The root of the mean square of the differences, in byte steps of 255"),
-            ("Maximum", "The largest difference of a byte, in steps of 255"),
-            ("Differing bytes", "The fraction of bytes that differ"),
-            ("FLIP", "The perceived difference when flipping between the pictures, from 0 to 1"),
-        ])
-        .map(|(measure, (label, hint))| Choice::new("Error metric", label, *measure == now, hint))
-        .collect();
-    if let Some(clicked) = row(ui, "Error metric", |ui| choices_in_rows(ui, &all)) {
-        requests.push(Request::Lab(LabRequest::Judge(Measure::ALL[clicked])));
+fn judge_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
+    let texts = [
+        ("RMSE", "The root of the mean square of the differences, in byte steps of 255"),
+        ("Maximum", "The largest difference of a byte, in steps of 255"),
+        ("Differing bytes", "The fraction of bytes that differ"),
+        ("FLIP", "The perceived difference when flipping between the pictures, from 0 to 1"),
+    ];
+    let all = Measure::ALL.into_iter().zip(texts);
+    let all: Vec<_> = all.map(|(measure, (label, hint))| (label, measure, hint)).collect();
+    let of = "Error metric";
+    if let Some(to) = row(ui, of, |ui| choose_in_rows(ui, of, state.lab.measure, &all)) {
+        requests.push(Request::Lab(LabRequest::Judge(to)));
     }
 }
 
-fn region_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
-    let now = state.lab.region;
+fn region_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let all = [
         ("All pixels", Region::Whole, "Errors over the whole picture, edges included"),
         ("Same coverage", Region::Inside, "Errors over the pixels that show the same triangle"),
     ];
-    let shown: Vec<Choice<'_>> = all
-        .iter()
-        .map(|(label, region, hint)| Choice::new("Error over", label, *region == now, hint))
-        .collect();
-    if let Some(clicked) = row(ui, "Error over", |ui| choices_in_rows(ui, &shown)) {
-        requests.push(Request::Lab(LabRequest::Over(all[clicked].1)));
+    let of = "Error over";
+    if let Some(to) = row(ui, of, |ui| choose_in_rows(ui, of, state.lab.region, &all)) {
+        requests.push(Request::Lab(LabRequest::Over(to)));
     }
 }
 
-fn budgets_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn budgets_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let (budgets, report) = (state.lab.budgets, state.lab.shown());
     let error = Budget {
         label: "Error up to",
@@ -172,7 +165,7 @@ fn budget_ui(
     ui: &mut Ui,
     budget: &Budget,
     report: Option<&Report>,
-    requests: &mut Vec<Request>,
+    requests: &mut Requests,
 ) -> Option<Option<f64>> {
     let mut changed = None;
     row(ui, budget.label, |ui| {
@@ -203,20 +196,19 @@ fn budget_ui(
     changed
 }
 
-fn compare_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn compare_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let now = state.lab.compare;
-    let is_split = matches!(now, Compare::Split(_));
+    // Every split is the same choice, wherever its slider is.
+    let chosen = if matches!(now, Compare::Split(_)) { Compare::Split(0.5) } else { now };
     let all = [
-        ("Off", now == Compare::Off, "Shows only the picture", Compare::Off),
-        ("Split", is_split, "Shows the ideal to the left of a slider", Compare::Split(0.5)),
-        ("x1", now == Compare::Error(1), "Shows the error", Compare::Error(1)),
-        ("x16", now == Compare::Error(16), "Shows 16 times the error", Compare::Error(16)),
-        ("x256", now == Compare::Error(256), "Shows 256 times the error", Compare::Error(256)),
+        ("Off", Compare::Off, "Shows only the picture"),
+        ("Split", Compare::Split(0.5), "Shows the ideal to the left of a slider"),
+        ("x1", Compare::Error(1), "Shows the error"),
+        ("x16", Compare::Error(16), "Shows 16 times the error"),
+        ("x256", Compare::Error(256), "Shows 256 times the error"),
     ];
-    let shown: Vec<Choice<'_>> =
-        all.iter().map(|(label, on, hint, _)| Choice::new("Compare", label, *on, hint)).collect();
-    if let Some(clicked) = row(ui, "Compare", |ui| choices(ui, &shown)) {
-        requests.push(Request::Lab(LabRequest::Compare(all[clicked].3)));
+    if let Some(to) = row(ui, "Compare", |ui| choose(ui, "Compare", chosen, &all)) {
+        requests.push(Request::Lab(LabRequest::Compare(to)));
     }
     if now != Compare::Off {
         with_ui(ui, state, requests);
@@ -227,7 +219,7 @@ fn compare_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 }
 
 /// Chooses the picture to compare with: the ideal, or the one that differs in a single axis.
-fn with_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn with_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let now = state.lab.reference;
     let alone = match now {
         Reference::Alone(axis) => axis,
@@ -236,23 +228,16 @@ fn with_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
             state.lab.panel.and_then(Axis::named).or(lesson).unwrap_or(&AXES[0])
         }
     };
-    let all = [Reference::Ideal, Reference::Alone(alone)];
     let label = capitalized(&Reference::Alone(alone).name(&state.settings));
-    let hints = [
-        "256 samples per pixel, each lit, with every choice at its most exact",
-        "The same settings, except that this axis is at its most exact",
-    ];
-    let shown: Vec<Choice<'_>> = all
-        .iter()
-        .zip(["Ideal", label.as_str()].into_iter().zip(hints))
-        .map(|(with, (label, hint))| Choice::new("Compare with", label, *with == now, hint))
-        .collect();
-    if let Some(clicked) = row(ui, "With", |ui| choices(ui, &shown)) {
-        requests.push(Request::Lab(LabRequest::Against(all[clicked])));
+    let exact = "256 samples per pixel, each lit, with every choice at its most exact";
+    let same = "The same settings, except that this axis is at its most exact";
+    let all = [("Ideal", Reference::Ideal, exact), (label.as_str(), Reference::Alone(alone), same)];
+    if let Some(with) = row(ui, "With", |ui| choose(ui, "Compare with", now, &all)) {
+        requests.push(Request::Lab(LabRequest::Against(with)));
     }
 }
 
-fn pixel_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn pixel_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let switch = Switch::new("Attribute the error of a pixel", state.lab.picking).ui(ui);
     let switch = switch.on_hover_text("Shows the error of one pixel and attributes it to an axis");
     if switch.clicked() {

@@ -10,10 +10,10 @@ mod table;
 
 use egui::{Id, Layout, Rect, ScrollArea, Ui, UiBuilder, vec2};
 
-use crate::app::actions::Request;
+use crate::app::actions::Requests;
 use crate::app::state::State;
 use crate::app::theme;
-use crate::app::widgets::controls::{Choice, choices};
+use crate::app::widgets::controls::choose;
 use crate::app::widgets::regions;
 
 /// The width of the controls.
@@ -31,8 +31,7 @@ const HALF_WIDE: f32 = 760.0;
 /// The share of the width for the verdict next to a plot.
 const BESIDE: f32 = 0.42;
 
-/// Shows the panel; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let whole = ui.available_rect_before_wrap();
     if whole.width() < WIDE {
         return one_ui(ui, state, requests);
@@ -77,7 +76,6 @@ enum Part {
 }
 
 impl Part {
-    /// Returns the parts of a panel of this width.
     const fn all(width: f32) -> &'static [Self] {
         if width < HALF_WIDE {
             &[Self::Options, Self::Verdict, Self::Plot, Self::Table]
@@ -86,15 +84,16 @@ impl Part {
         }
     }
 
-    /// Returns the label and the hint.
-    const fn texts(self) -> (&'static str, &'static str) {
-        match self {
+    /// Returns the part with its label and its hint.
+    const fn option(self) -> (&'static str, Self, &'static str) {
+        let (label, hint) = match self {
             Self::Options => ("Options", "Measurement, metrics and comparison"),
             Self::Results => ("Results", "The verdict, and time against error"),
             Self::Verdict => ("Verdict", "What every choice costs and gives here"),
             Self::Plot => ("Plot", "Time against error"),
             Self::Table => ("Table", "Every choice with its figures"),
-        }
+        };
+        (label, self, hint)
     }
 
     /// Returns the part of a panel with other parts that shows the same.
@@ -108,7 +107,7 @@ impl Part {
 }
 
 /// Shows one part at a time, with a choice of the part.
-fn one_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn one_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let id = Id::unique("part of the laboratory");
     let (part, was_running): (Part, bool) = ui.data(|data| data.get_temp(id)).unwrap_or_default();
     let all = Part::all(ui.available_width());
@@ -116,18 +115,10 @@ fn one_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     // Whoever measures wants to see the results.
     let wished = if is_running && !was_running { Part::Results } else { part };
     let mut part = wished.among(all);
-    let shown: Vec<Choice<'_>> = all
-        .iter()
-        .map(|other| {
-            let (label, hint) = other.texts();
-            Choice::new("Laboratory", label, *other == part, hint)
-        })
-        .collect();
     ui.horizontal(|ui| {
         ui.set_width(ui.available_width() - f32::from(theme::MARGIN));
-        if let Some(clicked) = choices(ui, &shown) {
-            part = all[clicked];
-        }
+        let shown: Vec<_> = all.iter().map(|other| other.option()).collect();
+        part = choose(ui, "Laboratory", part, &shown).unwrap_or(part);
     });
     ui.data_mut(|data| data.insert_temp(id, (part, is_running)));
     let rest = ui.available_rect_before_wrap();
@@ -159,7 +150,7 @@ fn one_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
 }
 
 /// Shows the verdict, in at most a share of the height.
-fn verdict_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn verdict_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let most = VERDICT * ui.available_height();
     let area =
         ScrollArea::vertical().id_salt("verdict").max_height(most).auto_shrink([false, true]);

@@ -7,10 +7,10 @@ use egui::{
 use egui::{WidgetInfo, pos2, vec2};
 use egui_plot::{GridMark, Plot, PlotPoint, PlotTransform, Span};
 
-use crate::app::actions::{LabRequest, Request};
+use crate::app::actions::{LabRequest, Request, Requests};
 use crate::app::state::State;
 use crate::app::theme;
-use crate::app::widgets::controls::{self, Choice, choices_in_rows};
+use crate::app::widgets::controls::{self, choose_in_rows};
 use crate::app::widgets::regions;
 use marraztu_lab::report::{Panel, PanelMark, Panels, Report, TextBox, brief, place};
 use marraztu_lab::sweep::{Against, Row};
@@ -41,15 +41,14 @@ fn mark_color(visuals: &Visuals, mark: &PanelMark) -> Color32 {
 }
 
 /// Shows the choice of the scene, and the verdict: it comes first, because it answers the question.
-pub(crate) fn verdict_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn verdict_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     suite_ui(ui, state, requests);
     for sentence in state.lab.shown().map(Report::verdict).unwrap_or_default() {
         ui.add(egui::Label::new(sentence).wrap());
     }
 }
 
-/// Shows a plot; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let Some(report) = state.lab.shown() else {
         return empty_ui(ui, state);
     };
@@ -113,27 +112,22 @@ fn sketch_ui(ui: &Ui, rect: Rect) {
 }
 
 /// Shows the choice between the scene on screen and the scenes of the suite.
-fn suite_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn suite_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     if state.lab.suite.is_empty() {
         return;
     }
     let scenes = state.lab.suite.iter().map(|report| report.scene.as_str()).enumerate();
     let scenes = scenes.map(|(i, name)| (Some(i), name.trim_start_matches("suite scene ")));
-    let all: Vec<_> = std::iter::once((None, "This scene")).chain(scenes).collect();
-    let chips: Vec<Choice<'_>> = all
-        .iter()
-        .map(|(place, name)| {
-            let chosen = state.lab.shown_suite == *place;
-            Choice::new("Measured", name, chosen, "Chooses the scene of these figures")
-        })
-        .collect();
-    if let Some(clicked) = choices_in_rows(ui, &chips) {
-        requests.push(Request::Lab(LabRequest::ShowSuite(all[clicked].0)));
+    let hint = "Chooses the scene of these figures";
+    let all = std::iter::once((None, "This scene")).chain(scenes);
+    let all: Vec<_> = all.map(|(place, name)| (name, place, hint)).collect();
+    if let Some(place) = choose_in_rows(ui, "Measured", state.lab.shown_suite, &all) {
+        requests.push(Request::Lab(LabRequest::ShowSuite(place)));
     }
 }
 
 /// Shows the choice of a plot.
-fn panels_ui(ui: &mut Ui, panels: &Panels, shown: &Panel, requests: &mut Vec<Request>) {
+fn panels_ui(ui: &mut Ui, panels: &Panels, shown: &Panel, requests: &mut Requests) {
     ui.horizontal(|ui| {
         let combo = ComboBox::from_id_salt("plot").selected_text(&shown.title).width(180.0);
         let combo = combo.height(400.0).show_ui(ui, |ui| {
@@ -153,7 +147,7 @@ fn panel_ui(
     ui: &mut Ui,
     (panels, panel): (&Panels, &Panel),
     (state, report): (&State, &Report),
-    requests: &mut Vec<Request>,
+    requests: &mut Requests,
 ) {
     // Marks are connected in order, each with a line for the noise of its time.
     let transform = plot_ui(ui, panels, panel);

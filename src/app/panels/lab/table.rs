@@ -1,11 +1,13 @@
 //! The table of the laboratory: every choice with its measurements; a click applies it.
 
-use egui::{Color32, Id, Rect, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, vec2};
+use egui::{Id, Rect, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, vec2};
 
-use crate::app::actions::Request;
+use crate::app::actions::{Request, Requests};
 use crate::app::state::State;
 use crate::app::theme;
-use crate::app::widgets::controls::{focus_ring, no_narrower, put_text, text};
+use crate::app::widgets::controls::{
+    focus_ring, no_narrower, put_text, right_text, row_ground, text,
+};
 use crate::app::widgets::regions;
 use marraztu_core::accuracy::Axis;
 use marraztu_lab::candidates::Group;
@@ -14,7 +16,6 @@ use marraztu_lab::picture_source::Reference;
 use marraztu_lab::report::{Report, brief, heading, left_out_in_words};
 use marraztu_lab::sweep::{Measured, Row, TOO_BUSY, Verdict};
 
-/// A column of the table.
 struct Column {
     heading: &'static str,
     hint: &'static str,
@@ -85,8 +86,7 @@ fn ratio(ratio: f64) -> String {
     }
 }
 
-/// Shows the panel; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let Some(report) = state.lab.shown() else {
         ui.weak("Nothing has been measured yet.");
         return;
@@ -94,7 +94,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     no_narrower(ui, LEAST, |ui| rows_ui(ui, state, report, requests));
 }
 
-fn rows_ui(ui: &mut Ui, state: &State, report: &Report, requests: &mut Vec<Request>) {
+fn rows_ui(ui: &mut Ui, state: &State, report: &Report, requests: &mut Requests) {
     head_ui(ui);
     let area = ScrollArea::vertical().id_salt("table of the laboratory").auto_shrink(false);
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
@@ -145,7 +145,6 @@ struct Place {
     is_stop: bool,
 }
 
-/// Returns the cell of a column in a row.
 fn cell(row: Rect, column: usize) -> Rect {
     let before: f32 = COLUMNS[..column].iter().map(|column| column.share).sum();
     let left = row.left() + (NAMES + before) * row.width();
@@ -160,7 +159,7 @@ fn head_ui(ui: &mut Ui) {
     let (row, _) = ui.allocate_exact_size(size, Sense::hover());
     for (i, column) in COLUMNS.iter().enumerate() {
         let rect = cell(row, i);
-        right_text(ui, rect, column.heading, ui.visuals().weak_text_color());
+        right_text(ui, rect, column.heading, TextStyle::Small, ui.visuals().weak_text_color());
         ui.interact(rect, ui.scope_id().with(("column", i)), Sense::hover())
             .on_hover_text(column.hint);
     }
@@ -172,7 +171,7 @@ fn row_ui(
     report: &Report,
     row: &Row,
     (place, on_front): (Place, bool),
-    requests: &mut Vec<Request>,
+    requests: &mut Requests,
 ) {
     let (point, error) = (&report.findings.points[row.point], &row.error);
     let now = point.settings == state.settings;
@@ -181,13 +180,7 @@ fn row_ui(
     let response = ui.interact(rect, place.id, regions::sense(Sense::click(), place.is_stop));
     let name = format!("{}: {}", heading(row), row.name);
     response.widget_info(|| WidgetInfo::selected(egui::Role::RadioButton, true, now, &name));
-    let visuals = ui.visuals();
-    let (fill, ink) = match (now, response.hovered()) {
-        (true, _) => (visuals.selection.bg_fill, visuals.selection.stroke.color),
-        (false, true) => (visuals.widgets.hovered.bg_fill, visuals.text_color()),
-        (false, false) => (Color32::TRANSPARENT, visuals.text_color()),
-    };
-    ui.painter().rect_filled(rect, 3.0, fill);
+    let ink = row_ground(ui, &response, now);
     // A bar marks choices on the Pareto front.
     if on_front {
         let bar = Rect::from_min_size(rect.min + vec2(1.0, 3.0), vec2(2.0, rect.height() - 6.0));
@@ -202,7 +195,8 @@ fn row_ui(
         let is_noise = matches!(point.verdict, Verdict::Alike | Verdict::Busy);
         let noise = i < 3 && is_noise && row.point != 0 && !now;
         let ink = if noise { ui.visuals().weak_text_color() } else { ink };
-        right_text(ui, cell(rect, i), &(column.value)(point, error, report.region), ink);
+        let value = (column.value)(point, error, report.region);
+        right_text(ui, cell(rect, i), &value, TextStyle::Small, ink);
     }
     focus_ring(ui, rect, &response);
     let verdict = match point.verdict {
@@ -218,12 +212,6 @@ fn row_ui(
     if response.on_hover_text(hint).clicked() {
         requests.push(Request::Settings(point.settings));
     }
-}
-
-fn right_text(ui: &Ui, rect: Rect, value: &str, ink: Color32) {
-    let galley = text(ui, value, TextStyle::Small, rect.width());
-    let at = egui::pos2(rect.right() - galley.size().x, rect.center().y - galley.size().y / 2.0);
-    ui.painter().galley_with_override_text_color(at, galley, ink);
 }
 
 /// Shows the conditions of the measurement, and the parts that were not measured.

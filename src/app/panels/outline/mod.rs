@@ -12,7 +12,7 @@ use egui::{
     Id, Popup, Rect, Role, ScrollArea, Sense, TextStyle, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 
-use crate::app::actions::{ADD_LIGHTS, Action, Request};
+use crate::app::actions::{ADD_LIGHTS, Action, Request, Requests};
 use crate::app::input::buttons::action_icon;
 use crate::app::state::State;
 use crate::app::theme;
@@ -20,9 +20,9 @@ use crate::app::widgets::controls::{self, icon_button};
 use crate::app::widgets::icons::Icon;
 use crate::app::widgets::regions;
 use marraztu_core::scene::{ItemId, ObjectId, Subject};
-use order::{place, reorder};
+pub(super) use order::place;
+use order::reorder;
 
-/// A line of the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Line {
     /// The heading of a list.
@@ -33,8 +33,7 @@ enum Line {
     Part(ObjectId, u32),
 }
 
-/// Shows the panel; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let all = ui.available_rect_before_wrap();
     let tools = all.with_min_y((all.bottom() - theme::ROW).max(all.top()));
     let tools = tools.with_max_x(all.right() - f32::from(theme::MARGIN));
@@ -46,7 +45,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
     tools_ui(&mut child, state, requests);
 }
 
-fn list_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn list_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     if state.renaming.is_none() {
         row::forget_new_name(ui);
     }
@@ -116,7 +115,7 @@ fn lines(state: &State, unfolded: &BTreeSet<ObjectId>) -> Vec<Line> {
 }
 
 /// Shows a filter for names, if there are many items.
-fn filter_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn filter_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     if !state.has_filter() {
         return;
     }
@@ -148,7 +147,7 @@ fn follow_selection(ui: &Ui, state: &State, line: Line, rect: Rect) {
 fn line_ui(
     ui: &mut Ui,
     state: &State,
-    requests: &mut Vec<Request>,
+    requests: &mut Requests,
     line: Line,
     rect: Rect,
     (unfolded, is_stop): (&mut BTreeSet<ObjectId>, bool),
@@ -172,13 +171,7 @@ fn unfolded_of(unfolded: &BTreeSet<ObjectId>, item: ItemId) -> bool {
     matches!(item, ItemId::Object(id) if unfolded.contains(&id))
 }
 
-fn header_ui(
-    ui: &mut Ui,
-    state: &State,
-    requests: &mut Vec<Request>,
-    subject: Subject,
-    rect: Rect,
-) {
+fn header_ui(ui: &mut Ui, state: &State, requests: &mut Requests, subject: Subject, rect: Rect) {
     let scene = &state.scene;
     let (action, name, count) = match subject {
         Subject::Object => (Action::SubjectObject, "Objects", scene.objects.len()),
@@ -215,12 +208,12 @@ fn header_ui(
 }
 
 /// Shows the button that adds an item to a list.
-fn add_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, subject: Subject) {
+fn add_ui(ui: &mut Ui, state: &State, requests: &mut Requests, subject: Subject) {
     match subject {
-        Subject::Object => action_icon(ui, state, requests, Icon::Plus, Action::Load),
-        Subject::Camera => action_icon(ui, state, requests, Icon::Plus, Action::AddCamera),
+        Subject::Object => action_icon(ui, state, requests, Icon::PLUS, Action::Load),
+        Subject::Camera => action_icon(ui, state, requests, Icon::PLUS, Action::AddCamera),
         Subject::Light => {
-            let response = icon_button(ui, Icon::Plus, "Add a light", true);
+            let response = icon_button(ui, Icon::PLUS, "Add a light", true);
             Popup::menu(&response).show(|ui| {
                 ui.set_min_width(160.0);
                 let attached = [Action::AddObjectSpot, Action::AddCameraSpot];
@@ -234,23 +227,23 @@ fn add_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, subject: Subj
 }
 
 /// Shows the actions on the selected item below the list.
-fn tools_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn tools_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     ui.horizontal(|ui| {
         ui.spacing_mut().item_spacing.x = 2.0;
-        move_ui(ui, state, requests, Icon::Up, "Move up the list");
-        move_ui(ui, state, requests, Icon::Down, "Move down the list");
+        move_ui(ui, state, requests, Icon::UP, "Move up the list");
+        move_ui(ui, state, requests, Icon::DOWN, "Move down the list");
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-            action_icon(ui, state, requests, Icon::Bin, Action::Delete);
-            action_icon(ui, state, requests, Icon::Copy, Action::Duplicate);
-            action_icon(ui, state, requests, Icon::Pen, Action::Rename);
+            action_icon(ui, state, requests, Icon::BIN, Action::Delete);
+            action_icon(ui, state, requests, Icon::COPY, Action::Duplicate);
+            action_icon(ui, state, requests, Icon::PEN, Action::Rename);
         });
     });
 }
 
-fn move_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, icon: Icon, name: &str) {
+fn move_ui(ui: &mut Ui, state: &State, requests: &mut Requests, icon: Icon, name: &str) {
     let place = state.selected().and_then(|id| Some((id, place(state, id)?)));
     let to = place.and_then(|(id, (at, count))| {
-        let to = if icon == Icon::Up { at.checked_sub(1)? } else { at + 1 };
+        let to = if icon == Icon::UP { at.checked_sub(1)? } else { at + 1 };
         (to < count).then_some((id, to))
     });
     let response = icon_button(ui, icon, name, to.is_some());

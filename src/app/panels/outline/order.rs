@@ -2,14 +2,14 @@
 
 use egui::Ui;
 
-use crate::app::actions::{Request, change};
+use crate::app::actions::{Requests, change};
 use crate::app::state::State;
 use crate::app::theme;
 use marraztu_core::edit::{Gesture, items, selection};
 use marraztu_core::scene::ItemId;
 
 /// Returns the index of an item in its list, and the length of the list.
-pub(super) fn place(state: &State, id: ItemId) -> Option<(usize, usize)> {
+pub(crate) fn place(state: &State, id: ItemId) -> Option<(usize, usize)> {
     let scene = &state.scene;
     Some(match id {
         ItemId::Object(id) => (scene.objects.position(id)?, scene.objects.len()),
@@ -19,7 +19,7 @@ pub(super) fn place(state: &State, id: ItemId) -> Option<(usize, usize)> {
 }
 
 /// Moves an item to another index in its list.
-pub(super) fn reorder(state: &State, requests: &mut Vec<Request>, id: ItemId, to: usize) {
+pub(super) fn reorder(state: &State, requests: &mut Requests, id: ItemId, to: usize) {
     let label = format!("Move {} in the list", state.name(id).unwrap_or_default());
     change(requests, label, Gesture::Whole, items::reorder(&state.scene, id, to));
 }
@@ -28,7 +28,7 @@ pub(super) fn reorder(state: &State, requests: &mut Vec<Request>, id: ItemId, to
 pub(super) fn take_dragged(
     ui: &Ui,
     state: &State,
-    requests: &mut Vec<Request>,
+    requests: &mut Requests,
     response: &egui::Response,
     onto: ItemId,
 ) {

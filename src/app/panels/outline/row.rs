@@ -6,7 +6,7 @@ use egui::{
 };
 
 use super::order::take_dragged;
-use crate::app::actions::{Action, Also, Request, change};
+use crate::app::actions::{Action, Also, Request, Requests, change};
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::controls::{self, icon_at};
@@ -43,7 +43,7 @@ pub(crate) fn busy(ui: &Ui, items: &[ItemId]) -> Option<usize> {
 }
 
 /// Shows an item. Returns whether the user folds or unfolds its parts.
-pub(crate) fn item_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, row: &Row) -> bool {
+pub(crate) fn item_ui(ui: &mut Ui, state: &State, requests: &mut Requests, row: &Row) -> bool {
     let Row { item, rect, is_stop, unfolded } = *row;
     let name = state.name(item).unwrap_or_default();
     let response =
@@ -53,7 +53,7 @@ pub(crate) fn item_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, r
     ground(ui, state, item, rect, &response);
     response.dnd_set_drag_payload(item);
     take_dragged(ui, state, requests, &response, item);
-    let shown = is_shown(&state.scene, item);
+    let shown = state.is_shown(item).unwrap_or_default();
     let color = ground_color(ui, is_subject, shown);
     let icon = Rect::from_min_size(rect.min + vec2(INDENT, 0.0), vec2(16.0, rect.height()));
     Icon::of(&state.scene, item).paint(ui.painter(), icon, 13.0, color);
@@ -80,7 +80,6 @@ pub(crate) fn item_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, r
     fold_ui(ui, state, row, unfolded, color)
 }
 
-/// Returns whether a file of an item is missing.
 fn is_missing(scene: &Scene, item: ItemId) -> bool {
     match item {
         ItemId::Object(id) => {
@@ -128,23 +127,14 @@ fn ground_color(ui: &Ui, selected: bool, shown: bool) -> Color32 {
     }
 }
 
-/// Returns whether an object or a camera's mark is drawn, or a light is on.
-fn is_shown(scene: &Scene, item: ItemId) -> bool {
-    match item {
-        ItemId::Object(id) => scene.objects.get(id).is_some_and(|object| object.visible),
-        ItemId::Camera(id) => scene.cameras.get(id).is_some_and(|camera| camera.visible),
-        ItemId::Light(id) => scene.lights.get(id).is_some_and(|light| light.on),
-    }
-}
-
 /// Shows the eye, or the switch of a light. Returns the x position of its left end.
-fn shown_ui(ui: &Ui, state: &State, requests: &mut Vec<Request>, row: &Row, shown: bool) -> f32 {
+fn shown_ui(ui: &Ui, state: &State, requests: &mut Requests, row: &Row, shown: bool) -> f32 {
     let Row { item, rect, is_stop, .. } = *row;
     let (icon, verb) = match (item, shown) {
-        (ItemId::Light(_), true) => (Icon::On, "Switch off"),
-        (ItemId::Light(_), false) => (Icon::Off, "Switch on"),
-        (_, true) => (Icon::Eye, "Hide"),
-        (_, false) => (Icon::EyeClosed, "Show"),
+        (ItemId::Light(_), true) => (Icon::ON, "Switch off"),
+        (ItemId::Light(_), false) => (Icon::OFF, "Switch on"),
+        (_, true) => (Icon::EYE, "Hide"),
+        (_, false) => (Icon::EYE_CLOSED, "Show"),
     };
     let label = format!("{verb} {}", state.name(item).unwrap_or_default());
     let rect = Rect::from_min_max(pos2(rect.right() - theme::ROW, rect.top()), rect.max);
@@ -192,7 +182,7 @@ const LOCK: f32 = 16.0;
 fn lock_ui(
     ui: &Ui,
     state: &State,
-    requests: &mut Vec<Request>,
+    requests: &mut Requests,
     row: &Row,
     (right, hovered): (f32, bool),
 ) -> f32 {
@@ -204,7 +194,7 @@ fn lock_ui(
     let sense = regions::sense(Sense::click(), is_stop);
     let response = ui.interact(rect, ui.scope_id().with(("locked", item)), sense);
     if locked || hovered || response.hovered() || response.has_focus() {
-        let icon = if locked { Icon::Lock } else { Icon::LockOpen };
+        let icon = if locked { Icon::LOCK } else { Icon::LOCK_OPEN };
         icon_at(ui, rect, &response, icon, &label, true);
     } else {
         response.widget_info(|| WidgetInfo::labeled(Role::Button, true, &label));
@@ -239,7 +229,7 @@ pub(crate) fn forget_new_name(ui: &Ui) {
 }
 
 /// Shows a field for a new name. Enter or a click outside confirms the name, Esc cancels.
-fn rename_ui(ui: &mut Ui, requests: &mut Vec<Request>, rect: Rect, name: &str) {
+fn rename_ui(ui: &mut Ui, requests: &mut Requests, rect: Rect, name: &str) {
     let id = new_name();
     let begun: Option<String> = ui.data(|data| data.get_temp(id));
     let mut text = begun.clone().unwrap_or_else(|| name.to_owned());
@@ -280,7 +270,7 @@ fn range_to(state: &State, item: ItemId) -> Vec<ItemId> {
 }
 
 /// Handles clicks on the line.
-fn clicks(state: &State, requests: &mut Vec<Request>, item: ItemId, response: &Response) {
+fn clicks(state: &State, requests: &mut Requests, item: ItemId, response: &Response) {
     if response.double_clicked() {
         requests.push(Request::BeginRename(item));
     } else if response.clicked() {
@@ -299,26 +289,23 @@ fn clicks(state: &State, requests: &mut Vec<Request>, item: ItemId, response: &R
         ui.set_min_width(160.0);
         let mut actions =
             vec![Action::Rename, Action::Duplicate, Action::Delete, Action::ToggleLocked];
-        if !matches!(item, ItemId::Light(_)) {
-            actions.push(Action::ToggleVisible);
-        }
-        if matches!(item, ItemId::Light(_)) {
-            actions.extend([
-                Action::SoloLight,
-                Action::ToggleShadows,
-                Action::AimAtSelection,
-                Action::AimByClick,
-            ]);
-        }
-        if matches!(item, ItemId::Object(_)) {
-            actions.extend([
+        match item {
+            ItemId::Object(_) => actions.extend([
+                Action::ToggleVisible,
                 Action::FrameSelection,
                 Action::ToggleOthers,
                 Action::WhyUnseen,
                 Action::DropToGround,
                 Action::Split,
                 Action::ChooseTexture,
-            ]);
+            ]),
+            ItemId::Camera(_) => actions.push(Action::ToggleVisible),
+            ItemId::Light(_) => actions.extend([
+                Action::SoloLight,
+                Action::ToggleShadows,
+                Action::AimAtSelection,
+                Action::AimByClick,
+            ]),
         }
         if is_missing(&state.scene, item) {
             actions.insert(0, Action::FindMissing);
@@ -342,7 +329,7 @@ fn fold_ui(ui: &Ui, state: &State, row: &Row, unfolded: bool, color: Color32) ->
     let response = ui.interact(rect, ui.scope_id().with(("parts", item)), sense);
     let label = format!("Parts of {}", object.name);
     response.widget_info(|| WidgetInfo::selected(Role::DisclosureTriangle, true, unfolded, &label));
-    let icon = if unfolded { Icon::Down } else { Icon::Right };
+    let icon = if unfolded { Icon::DOWN } else { Icon::RIGHT };
     icon.paint(ui.painter(), rect, 8.0, color);
     controls::focus_ring(ui, rect, &response);
     response.on_hover_text("Lists the parts of the model, to hide or show each").clicked()
@@ -352,7 +339,7 @@ fn fold_ui(ui: &Ui, state: &State, row: &Row, unfolded: bool, color: Color32) ->
 pub(crate) fn part_ui(
     ui: &Ui,
     state: &State,
-    requests: &mut Vec<Request>,
+    requests: &mut Requests,
     id: ObjectId,
     part: u32,
     rect: Rect,
@@ -362,14 +349,14 @@ pub(crate) fn part_ui(
     let Some(name) = usize::try_from(part).ok().and_then(|part| parts.get(part)) else { return };
     let name = if name.name.is_empty() { "(unnamed)" } else { &name.name };
     let shown = !object.hidden_parts.contains(&part);
-    let (icon, verb) = if shown { (Icon::Eye, "Hide") } else { (Icon::EyeClosed, "Show") };
+    let (icon, verb) = if shown { (Icon::EYE, "Hide") } else { (Icon::EYE_CLOSED, "Show") };
     let label = format!("{verb} part {name}");
     let button = Rect::from_min_max(pos2(rect.right() - theme::ROW, rect.top()), rect.max);
     let response = ui.interact(button, ui.scope_id().with(("part", id, part)), Sense::click());
     icon_at(ui, button, &response, icon, &label, true);
     let color = ground_color(ui, false, shown && object.visible);
     let mark = Rect::from_min_size(rect.min + vec2(INDENT + 16.0, 0.0), vec2(12.0, rect.height()));
-    Icon::Part.paint(ui.painter(), mark, 9.0, color);
+    Icon::PART.paint(ui.painter(), mark, 9.0, color);
     let text = Rect::from_x_y_ranges(mark.right() + 5.0..=button.left(), rect.y_range());
     controls::put_text(ui, text, controls::text(ui, name, TextStyle::Body, text.width()), color);
     if response.on_hover_text(&label).clicked() {

@@ -3,8 +3,8 @@
 use egui::Ui;
 use glam::{DMat3, DVec3};
 
-use super::{material, missing, number_row, steps_ui};
-use crate::app::actions::{Request, change};
+use super::{material, missing_ui, number_row, steps_ui};
+use crate::app::actions::{Requests, change};
 use crate::app::panels::view_switches::frame_ui;
 use crate::app::state::State;
 use crate::app::widgets::controls::{Switch, row, section};
@@ -13,9 +13,9 @@ use marraztu_core::base::math::{self, Axis};
 use marraztu_core::edit::{Gesture, items, placement};
 use marraztu_core::scene::{Camera, CameraId, Lens};
 
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests, id: CameraId) {
     let Some(camera) = state.scene.cameras.get(id) else { return };
-    missing::show(ui, requests, camera.missing_file().into_iter());
+    missing_ui(ui, requests, camera.missing_file().into_iter());
     section(ui, "Transform", true, |ui| {
         pose_ui(ui, state, requests, id, camera);
         row(ui, "Moves", |ui| frame_ui(ui, state, requests));
@@ -25,7 +25,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: 
     section(ui, "Camera model", true, |ui| mark_ui(ui, state, requests, id, camera));
 }
 
-fn pose_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId, camera: &Camera) {
+fn pose_ui(ui: &mut Ui, state: &State, requests: &mut Requests, id: CameraId, camera: &Camera) {
     let (scene, view) = (&state.scene, &state.view);
     let pose = camera.pose.now();
     let hint = "Position of the camera's eye";
@@ -61,7 +61,7 @@ fn camera_turn(degrees: DVec3) -> DMat3 {
     turn(Axis::Y, degrees.x) * turn(Axis::X, degrees.y) * turn(Axis::Z, degrees.z)
 }
 
-fn lens_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId, camera: &Camera) {
+fn lens_ui(ui: &mut Ui, state: &State, requests: &mut Requests, id: CameraId, camera: &Camera) {
     let lens = camera.lens;
     let mut set = |changed: Option<(f64, Gesture)>, to: &dyn Fn(f64) -> Lens| {
         if let Some((value, gesture)) = changed {
@@ -99,7 +99,7 @@ fn lens_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId
 }
 
 /// Shows the properties of the camera's model, as seen by other observers.
-fn mark_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: CameraId, camera: &Camera) {
+fn mark_ui(ui: &mut Ui, state: &State, requests: &mut Requests, id: CameraId, camera: &Camera) {
     let scene = &state.scene;
     let hint = "Shows the camera to other observers as a small pyramid";
     if Switch::new("Visible", camera.visible).ui(ui).on_hover_text(hint).clicked() {

@@ -3,39 +3,37 @@
 use egui::Ui;
 
 use super::number_row;
-use crate::app::actions::{Request, change};
-use crate::app::state::State;
+use super::object::Shown;
+use crate::app::actions::Requests;
 use crate::app::widgets::number::Number;
 use marraztu_core::edit::{Gesture, items};
-use marraztu_core::scene::{Crease, Object, ObjectId};
+use marraztu_core::scene::Crease;
 
 /// The maximum number of polygons for new normals in every frame of a drag. Larger meshes, for
 /// which that would be too slow, get new normals at the end of the drag.
 const MOST_WHILE_DRAGGED: usize = 200_000;
 
-pub(crate) fn show(
-    ui: &mut Ui,
-    state: &State,
-    requests: &mut Vec<Request>,
-    id: ObjectId,
-    object: &Object,
-) {
-    let idle =
-        items::why_no_crease(&object.model, object.file_normals).map(|why| format!("Off: {why}"));
-    let hint = idle.as_deref().unwrap_or(
-        "Edges between faces that differ by more degrees are sharp: 0 for flat faces, 180 for none",
-    );
-    let waiting = Waiting::of(ui);
-    let now = waiting.map_or(object.model.options.crease.get(), |waiting| waiting.degrees);
-    let number = Number::new("Crease angle", hint).speed(0.5).range(0.0..=180.0).suffix(" deg");
-    let row = |ui: &mut Ui| number_row(ui, "Crease angle", number, now);
-    let mut changed = ui.add_enabled_ui(idle.is_none(), row).inner;
-    if object.model.mesh.polygon_count() > MOST_WHILE_DRAGGED {
-        changed = Waiting::until_let_go(ui, waiting, changed);
-    }
-    if let Some((crease, gesture)) = changed.and_then(|(to, by)| Some((Crease::new(to)?, by))) {
-        let command = items::set_crease(&state.scene, id, crease);
-        change(requests, format!("Change the crease angle of {}", object.name), gesture, command);
+impl Shown<'_> {
+    pub(super) fn crease_ui(&self, ui: &mut Ui, requests: &mut Requests) {
+        let object = self.object;
+        let idle = items::why_no_crease(&object.model, object.file_normals);
+        let idle = idle.map(|why| format!("Off: {why}"));
+        let hint = idle.as_deref().unwrap_or(
+            "Edges between faces that differ by more degrees are sharp: 0 for flat faces, 180 for \
+             none",
+        );
+        let waiting = Waiting::of(ui);
+        let now = waiting.map_or(object.model.options.crease.get(), |waiting| waiting.degrees);
+        let number = Number::new("Crease angle", hint).speed(0.5).range(0.0..=180.0).suffix(" deg");
+        let row = |ui: &mut Ui| number_row(ui, "Crease angle", number, now);
+        let mut changed = ui.add_enabled_ui(idle.is_none(), row).inner;
+        if object.model.mesh.polygon_count() > MOST_WHILE_DRAGGED {
+            changed = Waiting::until_let_go(ui, waiting, changed);
+        }
+        if let Some((crease, gesture)) = changed.and_then(|(to, by)| Some((Crease::new(to)?, by))) {
+            let command = items::set_crease(&self.state.scene, self.id, crease);
+            self.change(requests, "Change the crease angle of", gesture, command);
+        }
     }
 }
 

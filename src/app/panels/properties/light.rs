@@ -4,7 +4,7 @@ use egui::{ComboBox, Slider, Ui};
 use glam::DVec3;
 
 use super::{number_row, steps_ui};
-use crate::app::actions::{Action, Request, change};
+use crate::app::actions::{Action, Request, Requests, change};
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::color_picker::swatch;
@@ -24,7 +24,7 @@ struct Shown<'a> {
     light: &'a Light,
 }
 
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: LightId) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests, id: LightId) {
     let Some(light) = state.scene.lights.get(id) else { return };
     let shown = Shown { state, id, light };
     section(ui, "Colour", true, |ui| shown.color_ui(ui, requests));
@@ -68,7 +68,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, id: 
 }
 
 /// Shows the actions that aim the light.
-fn aim_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+fn aim_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     ui.horizontal_wrapped(|ui| {
         requests.extend(Action::AimAtSelection.button(ui, state).map(Request::from));
         requests.extend(Action::AimByClick.switch(ui, state).map(Request::from));
@@ -80,7 +80,7 @@ impl Shown<'_> {
         format!("{verb} {}", self.light.name)
     }
 
-    fn color_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>) {
+    fn color_ui(&self, ui: &mut Ui, requests: &mut Requests) {
         let Self { state, id, light } = *self;
         let scene = &state.scene;
         if Switch::new("Shines", light.on).ui(ui).on_hover_text(self.key_hint()).clicked() {
@@ -128,7 +128,7 @@ impl Shown<'_> {
         }
     }
 
-    fn position_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>, position: DVec3) {
+    fn position_ui(&self, ui: &mut Ui, requests: &mut Requests, position: DVec3) {
         let hint = "Position of the light";
         let changed =
             row(ui, "Position", |ui| vector(ui, &Number::new("Position", hint), position));
@@ -139,7 +139,7 @@ impl Shown<'_> {
         }
     }
 
-    fn direction_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>, direction: DVec3) {
+    fn direction_ui(&self, ui: &mut Ui, requests: &mut Requests, direction: DVec3) {
         let hint = "Direction of the light; normalised";
         let field = Number::new("Direction", hint).speed(0.01).range(-1.0..=1.0);
         let changed = row(ui, "Direction", |ui| vector(ui, &field, direction));
@@ -150,7 +150,7 @@ impl Shown<'_> {
         }
     }
 
-    fn orbit_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>, orbit: Orbit) {
+    fn orbit_ui(&self, ui: &mut Ui, requests: &mut Requests, orbit: Orbit) {
         let (scene, time) = (&self.state.scene, self.state.view.time);
         let hint = "Circles the world's Y axis";
         if Switch::new("Circles", orbit.on).ui(ui).on_hover_text(hint).clicked() {
@@ -166,8 +166,7 @@ impl Shown<'_> {
         }
     }
 
-    /// Shows the numbers of its kind.
-    fn numbers_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>) {
+    fn numbers_ui(&self, ui: &mut Ui, requests: &mut Requests) {
         for (row, now) in self.light.kind.numbers() {
             let number = Number::new(row.name, row.hint).speed(row.speed);
             let number = number.range(0.0..=row.most_typed).suffix(row.suffix);
@@ -179,7 +178,7 @@ impl Shown<'_> {
     }
 
     /// Shows the choice of the spot's owner.
-    fn owner_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>, owner: &SpotOwner) {
+    fn owner_ui(&self, ui: &mut Ui, requests: &mut Requests, owner: &SpotOwner) {
         let scene = &self.state.scene;
         let mut owners = vec![SpotOwner::SelectedObject, SpotOwner::SelectedCamera];
         owners.extend(scene.objects.ids().map(SpotOwner::Object));
@@ -218,7 +217,7 @@ impl Shown<'_> {
         self.state.scene.aim(&self.state.view, owner).unwrap_or(nowhere)
     }
 
-    fn fading_ui(&self, ui: &mut Ui, requests: &mut Vec<Request>) {
+    fn fading_ui(&self, ui: &mut Ui, requests: &mut Requests) {
         ui.weak("1 / (constant + linear d + quadratic d^2)");
         let now = self.light.attenuation;
         let mut set = |label: &str, value: f64, to: &dyn Fn(f64) -> Attenuation| {

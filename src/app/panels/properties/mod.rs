@@ -4,24 +4,25 @@ mod camera;
 mod crease;
 mod light;
 mod material;
-mod missing;
 mod object;
 mod several;
 mod surface;
 
+use std::path::Path;
+
 use egui::{ScrollArea, Sense, TextStyle, Ui, vec2};
 
-use crate::app::actions::{Request, change_view};
+use crate::app::actions::{MissingRequest, Request, Requests, change_view};
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::controls::{self, Switch, row, section};
 use crate::app::widgets::icons::Icon;
 use crate::app::widgets::number::Number;
+use crate::app::widgets::text::file_name;
 use marraztu_core::edit;
 use marraztu_core::scene::{ItemId, Transformation};
 
-/// Shows the panel; its requests are added to `requests`.
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Vec<Request>) {
+pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let Some(item) = state.selected().filter(|item| state.scene.contains(*item)) else {
         ui.add_space(theme::GAP);
         ui.weak("Nothing is selected.");
@@ -67,7 +68,7 @@ fn title(ui: &mut Ui, state: &State, item: ItemId) {
 }
 
 /// Shows the step sizes of the keys x, y and z.
-fn steps_ui(ui: &mut Ui, state: &State, requests: &mut Vec<Request>, scaling: bool) {
+fn steps_ui(ui: &mut Ui, state: &State, requests: &mut Requests, scaling: bool) {
     // Sizes chosen by the program are shown unfolded.
     section(ui, "Step sizes", state.view.steps.by_size, |ui| {
         let steps = state.view.steps;
@@ -123,4 +124,18 @@ fn number_row(
         let width = ui.available_width();
         number.ui(ui, width, value)
     })
+}
+
+/// Lists the missing files of an item, each with a button to find it.
+fn missing_ui<'a>(ui: &mut Ui, requests: &mut Requests, files: impl Iterator<Item = &'a Path>) {
+    for file in files {
+        ui.horizontal_wrapped(|ui| {
+            let text = format!("{} is missing", file_name(file));
+            let color = ui.visuals().warn_fg_color;
+            ui.colored_label(color, text).on_hover_text(file.display().to_string());
+            if ui.button("Find...").on_hover_text("Locates the missing file").clicked() {
+                requests.push(Request::Missing(MissingRequest::Find(Some(file.to_owned()))));
+            }
+        });
+    }
 }

@@ -3,7 +3,8 @@
 use eframe::NativeOptions;
 use egui::{Ui, ViewportBuilder, Visuals};
 
-use super::{Editor, Make, StartError, display_error};
+use super::{Make, StartError, display_error};
+use crate::app::editor::App;
 
 pub(super) fn run(viewport: ViewportBuilder, make: Make) -> Result<(), StartError> {
     // Without dithering, which makes the colours equal to those of the other shell.
@@ -15,7 +16,7 @@ pub(super) fn run(viewport: ViewportBuilder, make: Make) -> Result<(), StartErro
 
 /// The editor as an app of eframe.
 struct Guest {
-    editor: Box<dyn Editor>,
+    editor: App,
     /// Whether the window was asked to close and the editor did not object.
     left: bool,
 }
@@ -23,7 +24,7 @@ struct Guest {
 impl eframe::App for Guest {
     fn ui(&mut self, ui: &mut Ui, frame: &mut eframe::Frame) {
         let asked = ui.input(|input| input.viewport().close_requested());
-        self.editor.frame(ui, frame);
+        self.editor.frame_within(ui, frame);
         self.left = asked;
     }
 
@@ -35,7 +36,7 @@ impl eframe::App for Guest {
         // eframe also calls this if the window is lost, without a frame that asks about closing. If
         // the editor objects to closing, another frame follows before the end.
         if self.left {
-            self.editor.left();
+            self.editor.end();
         }
     }
 }

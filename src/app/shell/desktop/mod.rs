@@ -11,8 +11,8 @@ mod window;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use egui::{Context, Ui, ViewportBuilder};
-use winit::raw_window_handle::{HasDisplayHandle, HasWindowHandle};
+use crate::app::editor::App;
+use egui::{Context, ViewportBuilder};
 
 /// The way to paint the window.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -26,24 +26,8 @@ pub enum Shell {
     Software,
 }
 
-/// The window as the parent of system dialogs.
-pub(crate) trait Parent: HasWindowHandle + HasDisplayHandle {}
-
-impl<T: HasWindowHandle + HasDisplayHandle> Parent for T {}
-
-/// The content of a window.
-pub(crate) trait Editor {
-    /// Shows a frame and handles the user's input.
-    fn frame(&mut self, ui: &mut Ui, parent: &dyn Parent);
-
-    /// Handles the end of the window after the user has left, which means that the window was asked
-    /// to close and the editor did not object. Not called if the window is lost with its display or
-    /// by a fault.
-    fn left(&mut self);
-}
-
 /// Creates the editor after the window was opened.
-pub(crate) type Make = Box<dyn FnOnce(&Context) -> Box<dyn Editor>>;
+pub(crate) type Make = Box<dyn FnOnce(&Context) -> App>;
 
 /// The reason why no window could be opened, or why it was lost.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

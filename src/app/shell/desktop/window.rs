@@ -13,7 +13,8 @@ use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
 use winit::raw_window_handle::{HasDisplayHandle, RawDisplayHandle};
 
 use super::surface::Surface;
-use super::{Editor, Make, StartError, display_error};
+use super::{Make, StartError, display_error};
+use crate::app::editor::App;
 use marraztu_painter::WindowFrame;
 
 /// The minimum interval between frames.
@@ -57,7 +58,7 @@ pub(super) struct Window {
     ctx: Context,
     state: State,
     surface: Surface,
-    editor: Box<dyn Editor>,
+    editor: App,
     info: ViewportInfo,
     /// When the information was read; `None` if it is out of date.
     told_at: Option<Instant>,
@@ -141,7 +142,7 @@ impl Window {
 
     /// Tells the editor that the user has left.
     pub(super) fn leave(&mut self) {
-        self.editor.left();
+        self.editor.end();
     }
 
     /// Returns the time of the next frame.
@@ -262,7 +263,7 @@ impl Window {
         let input = self.input();
         let asked_to_close = input.viewport().close_requested();
         let (editor, parent) = (&mut self.editor, &*self.window);
-        let output = self.ctx.run_ui(input, |ui| editor.frame(ui, parent));
+        let output = self.ctx.run_ui(input, |ui| editor.frame_within(ui, parent));
         self.info.events.clear();
         let FullOutput { platform_output, textures_delta, shapes, pixels_per_point, .. } = output;
         // Textures are collected even if nothing is painted, since egui sends each change only

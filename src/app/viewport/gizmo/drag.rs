@@ -9,7 +9,7 @@ use glam::DVec3;
 
 use super::typed::Typed;
 use super::{Gizmo, Handle, others};
-use crate::app::actions::Request;
+use crate::app::actions::{Request, Requests};
 use crate::app::chord::command_key;
 use crate::app::state::State;
 use crate::app::widgets::{expression, number::short};
@@ -88,7 +88,6 @@ impl Grab {
         Some(grab)
     }
 
-    /// Returns the handle.
     pub(crate) const fn handle(&self) -> Handle {
         self.handle
     }
@@ -105,7 +104,7 @@ impl Grab {
         &mut self,
         pull: Pull<'_>,
         gesture: Gesture,
-        requests: &mut Vec<Request>,
+        requests: &mut Requests,
     ) -> bool {
         let ended = self.typed.take(pull.typed);
         let amount = if self.is_typed() {
@@ -129,7 +128,7 @@ impl Grab {
         &mut self,
         pull: Pull<'_>,
         gesture: Gesture,
-        requests: &mut Vec<Request>,
+        requests: &mut Requests,
     ) -> bool {
         if pull.typed == "\n" && !self.is_typed() {
             return true;
@@ -143,10 +142,7 @@ impl Grab {
         let command = several::each(scene, view, others, |scene, view| {
             gizmo::transform(scene, view, amount, GesturePhase::First)
         });
-        match command {
-            Ok(command) => Request::Change { command, gesture, label: self.label(amount) },
-            Err(why) => Request::Refuse(why.to_string()),
-        }
+        Request::change(self.label(amount), gesture, command)
     }
 
     /// Describes the amount for the history: "Move teapot 12 along x".

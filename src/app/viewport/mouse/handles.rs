@@ -3,7 +3,7 @@
 use egui::{Rect, Ui};
 
 use super::{CLICK, Motion, Mouse, Under};
-use crate::app::actions::Request;
+use crate::app::actions::{Request, Requests};
 use crate::app::viewport::gizmo::{Grab, Pull};
 use crate::app::widgets::gestures;
 use marraztu_core::edit::Gesture;
@@ -28,14 +28,13 @@ impl Mouse {
         self.grab.is_some()
     }
 
-    /// Returns the selection box in progress.
     pub(crate) fn selection_box(&self) -> Option<Rect> {
         let drag = self.drag.filter(|drag| drag.motion == Motion::Box && drag.moved && !drag.over);
         drag.map(|drag| Rect::from_two_pos(drag.from, drag.to))
     }
 
     /// Lets the held handle follow the pointer and the typed text.
-    pub(super) fn pull(&mut self, ui: &Ui, under: Under<'_>, requests: &mut Vec<Request>) {
+    pub(super) fn pull(&mut self, ui: &Ui, under: Under<'_>, requests: &mut Requests) {
         let typed_gesture = self.typed_gesture();
         let Some(grab) = &mut self.grab else { return };
         let snap = ui.input(|input| input.modifiers.command);
@@ -58,7 +57,7 @@ impl Mouse {
     }
 
     /// Ends a typed amount at a press of the mouse and keeps its effect.
-    pub(super) fn end_typing(&mut self, requests: &mut Vec<Request>) {
+    pub(super) fn end_typing(&mut self, requests: &mut Requests) {
         if self.grab.take().is_some_and(|grab| !grab.is_typed()) {
             requests.push(Request::Abandon(self.typed_gesture()));
         }

@@ -4,6 +4,7 @@ use super::*;
 use crate::app::viewport::gizmo::Shape;
 use egui::vec2;
 use glam::DMat4;
+use marraztu_core::edit::placement;
 use marraztu_core::scene::Frame;
 
 fn scene(offset: DVec3, size: f64) -> State {
@@ -12,24 +13,12 @@ fn scene(offset: DVec3, size: f64) -> State {
     state.view.subject = marraztu_core::scene::Subject::Object;
     let id = state.view.object.unwrap();
     let m = DMat4::from_translation(offset) * DMat4::from_scale(DVec3::splat(size));
-    let command = marraztu_core::edit::placement::object(
-        &state.scene,
-        &state.view,
-        id,
-        m,
-        GesturePhase::First,
-    );
+    let command = placement::object(&state.scene, &state.view, id, m, GesturePhase::First);
     command.unwrap().apply(&mut state.scene).unwrap();
     let turn = math::rotation(DVec3::Y, 0.4) * math::rotation(DVec3::X, -0.3);
     let eye = offset + turn * DVec3::new(20.0, 5.0, 300.0) * size;
     let camera = state.view.camera;
-    let command = marraztu_core::edit::placement::camera(
-        &state.scene,
-        camera,
-        eye,
-        turn,
-        GesturePhase::First,
-    );
+    let command = placement::camera(&state.scene, camera, eye, turn, GesturePhase::First);
     command.unwrap().apply(&mut state.scene).unwrap();
     state
 }
@@ -77,11 +66,11 @@ fn a_drag_along_an_axis_stays_under_the_pointer_at_every_size_and_distance() {
             let mut state = scene(DVec3::splat(offset), size);
             let before = gizmo(&state);
             let from = end(&before, Handle::Axis(axis));
-            let way = from - before.sight.place(before.sight.in_view(before.pivot.origin)).unwrap();
+            let middle = |g: &Gizmo| g.sight.place(g.sight.in_view(g.pivot.origin)).unwrap();
+            let way = from - middle(&before);
             drag(&mut state, Handle::Axis(axis), way * 0.4, "").unwrap();
             let after = gizmo(&state);
-            let shift = |g: &Gizmo| g.sight.place(g.sight.in_view(g.pivot.origin)).unwrap();
-            let moved = shift(&after) - shift(&before);
+            let moved = middle(&after) - middle(&before);
             // The end of the handle was dragged, so the middle moves as far, except for
             // perspective.
             assert!((moved - way * 0.4).length() < 8.0, "{axis:?} {offset} {size}: {moved:?}");
