@@ -287,8 +287,8 @@ impl<T: ShadingNumber> Painter<T> {
         while left != 0 {
             let first = left.trailing_zeros() as usize;
             let Some(number) = self.visibility.whole(first) else { return };
-            let is_own = |block: &usize| self.visibility.whole(*block) == Some(number);
-            let which = Bits(left).filter(is_own).fold(0, |which, block| which | 1 << block);
+            let own = |block| u64::from(self.visibility.whole(block) == Some(number)) << block;
+            let which = Bits(left).fold(0, |which, block| which | own(block));
             left &= !which;
             let blocks = Blocks { which, corner: [bounds.left, bounds.top] };
             self.shader.full_blocks(context, number, blocks, canvas);
