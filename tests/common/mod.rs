@@ -9,9 +9,8 @@ use marraztu_core::accuracy::Shot;
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{
-    Camera, CameraId, Command, Item, Lens, Light, LightId, LoadOptions, MaterialChoice, Mesh,
-    MeshSource, Model, NONE, Object, ObjectId, Part, Pose, PresetId, Scene, SourceCorner, Tracked,
-    View,
+    Camera, CameraId, Command, Item, Lens, Light, LightId, MaterialChoice, Mesh, MeshSource, Model,
+    NONE, Object, ObjectId, Part, Pose, PresetId, Scene, SourceCorner, Tracked, View,
 };
 use marraztu_render::Renderer;
 use marraztu_render::plan_frame;
@@ -37,15 +36,7 @@ pub(crate) fn model(name: &str, positions: &[[f32; 3]], polygons: &[&[u32]]) -> 
 
 /// Builds a model from a mesh source.
 pub(crate) fn model_of(name: &str, source: MeshSource) -> Shared<Model> {
-    Shared::new(Model {
-        name: name.to_owned(),
-        source: None,
-        companions: Vec::new(),
-        options: LoadOptions::default(),
-        mesh: Mesh::new(source).expect("tests make good meshes"),
-        materials: Vec::new(),
-        edge_color: None,
-    })
+    Shared::new(Model::of_mesh(name, Mesh::new(source).expect("tests make good meshes")))
 }
 
 /// A cube from -1 to 1, with outward faces.

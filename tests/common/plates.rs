@@ -3,9 +3,8 @@
 use glam::{DMat4, DVec3};
 use marraztu_core::base::Shared;
 use marraztu_core::scene::{
-    Camera, Command, Item, ItemId, Lens, Light, LightId, LoadOptions, MaterialChoice, Mesh,
-    MeshSource, Model, NONE, Object, ObjectId, Part, Pose, PresetId, Scene, SourceCorner, Tracked,
-    View,
+    Camera, Command, Item, ItemId, Lens, Light, LightId, MaterialChoice, Mesh, MeshSource, Model,
+    NONE, Object, ObjectId, Part, Pose, PresetId, Scene, SourceCorner, Tracked, View,
 };
 
 /// Two triangles, each its own part. The mean of the vertices is (1, 2, 3), and every vertex is 5
@@ -21,15 +20,7 @@ pub(crate) fn model() -> Shared<Model> {
         parts: vec![part("lower"), part("upper")],
         ..MeshSource::default()
     };
-    Shared::new(Model {
-        name: "plate".to_owned(),
-        source: None,
-        companions: Vec::new(),
-        options: LoadOptions::default(),
-        mesh: Mesh::new(source).unwrap(),
-        materials: Vec::new(),
-        edge_color: None,
-    })
+    Shared::new(Model::of_mesh("plate", Mesh::new(source).unwrap()))
 }
 
 /// A camera at (0, 0, 400); objects 3, 2 and 1 in this order, at (-100, 0, 0), (100, 0, 0) and

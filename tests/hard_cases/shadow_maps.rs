@@ -5,8 +5,8 @@ use marraztu_core::accuracy::{AXES, Filter, Settings, ShadowMethod, Terminator};
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{
-    FileMaterial, LoadOptions, MapKind, Material, MaterialChoice, Mesh, MeshSource, Model, NONE,
-    ObjectId, Part, SourceCorner, SurfaceMap, SurfaceMaps, Texture, Undrawn, Wrap,
+    FileMaterial, MapKind, Material, MaterialChoice, Mesh, MeshSource, Model, NONE, ObjectId, Part,
+    SourceCorner, SurfaceMap, SurfaceMaps, Texture, Undrawn, Wrap,
 };
 
 use super::common::{at, ball, cube, draw, edit, square};
@@ -148,23 +148,10 @@ fn stencil() -> Shared<Model> {
         emission: [0.0; 3],
     };
     let (name, opacity, texture, unlit) = ("sheet".to_owned(), 1.0, None, false);
-    Shared::new(Model {
-        name: name.clone(),
-        source: None,
-        companions: Vec::new(),
-        options: LoadOptions::default(),
-        mesh: Mesh::new(source).expect("a good mesh"),
-        materials: vec![FileMaterial {
-            name,
-            material,
-            opacity,
-            texture,
-            maps,
-            unlit,
-            undrawn: Undrawn::new(),
-        }],
-        edge_color: None,
-    })
+    let undrawn = Undrawn::new();
+    let material = FileMaterial { name, material, opacity, texture, maps, unlit, undrawn };
+    let mesh = Mesh::new(source).expect("a good mesh");
+    Shared::new(Model { materials: vec![material], ..Model::of_mesh("sheet", mesh) })
 }
 
 #[test]

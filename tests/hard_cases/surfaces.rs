@@ -6,9 +6,9 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::color::Color;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{
-    FileMaterial, Light, LightId, LightKind, LoadOptions, MapKind, Material, MaterialChoice, Mesh,
-    MeshSource, Model, NONE, ObjectId, Part, Scene, SourceCorner, Surface, SurfaceMap, SurfaceMaps,
-    Texture, Tracked, Undrawn, View, Wrap,
+    FileMaterial, Light, LightId, LightKind, MapKind, Material, MaterialChoice, Mesh, MeshSource,
+    Model, NONE, ObjectId, Part, Scene, SourceCorner, Surface, SurfaceMap, SurfaceMaps, Texture,
+    Tracked, Undrawn, View, Wrap,
 };
 use marraztu_render::plan_frame;
 
@@ -49,24 +49,17 @@ fn sheet(uvs: [[[f32; 2]; 4]; 2], maps: SurfaceMaps, material: Material) -> Shar
         parts: vec![Part { name: "sheet".to_owned(), material: Some(0) }],
         ..MeshSource::default()
     };
-    let name = "sheet".to_owned();
-    Shared::new(Model {
-        name: name.clone(),
-        source: None,
-        companions: Vec::new(),
-        options: LoadOptions::default(),
-        mesh: Mesh::new(source).unwrap(),
-        materials: vec![FileMaterial {
-            name,
-            material,
-            opacity: 1.0,
-            texture: None,
-            maps,
-            unlit: false,
-            undrawn: Undrawn::new(),
-        }],
-        edge_color: None,
-    })
+    let material = FileMaterial {
+        name: "sheet".to_owned(),
+        material,
+        opacity: 1.0,
+        texture: None,
+        maps,
+        unlit: false,
+        undrawn: Undrawn::new(),
+    };
+    let mesh = Mesh::new(source).unwrap();
+    Shared::new(Model { materials: vec![material], ..Model::of_mesh("sheet", mesh) })
 }
 
 fn dull() -> Material {

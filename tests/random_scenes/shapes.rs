@@ -8,8 +8,8 @@ use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::base::once::get_or_compute;
 use marraztu_core::base::rng::Rng;
 use marraztu_core::scene::{
-    FileMaterial, LoadOptions, MapKind, Material, Mesh, MeshSource, Model, NONE, Part,
-    SourceCorner, SurfaceMap, SurfaceMaps, Texture, Undrawn, Wrap,
+    FileMaterial, MapKind, Material, Mesh, MeshSource, Model, NONE, Part, SourceCorner, SurfaceMap,
+    SurfaceMaps, Texture, Undrawn, Wrap,
 };
 
 /// Coefficients on both sides of the thresholds for leaving terms out.
@@ -37,15 +37,8 @@ fn model(name: &str, source: MeshSource, materials: Vec<FileMaterial>) -> Shared
         },
         ..source
     };
-    Shared::new(Model {
-        name: name.to_owned(),
-        source: None,
-        companions: Vec::new(),
-        options: LoadOptions::default(),
-        mesh: Mesh::new(source).expect("these shapes are meshes"),
-        materials,
-        edge_color: None,
-    })
+    let mesh = Mesh::new(source).expect("these shapes are meshes");
+    Shared::new(Model { materials, ..Model::of_mesh(name, mesh) })
 }
 
 fn triangle() -> Shared<Model> {

@@ -7,8 +7,8 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::color::byte;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{
-    FileMaterial, LoadOptions, MapKind, Material, Mesh, MeshSource, Model, Part, Smoothing,
-    SourceCorner, SurfaceMap, SurfaceMaps, Texture, Undrawn, Wrap,
+    FileMaterial, MapKind, Material, Mesh, MeshSource, Model, Part, Smoothing, SourceCorner,
+    SurfaceMap, SurfaceMaps, Texture, Undrawn, Wrap,
 };
 
 /// The name of the model in scene files.
@@ -100,21 +100,15 @@ pub(super) fn model() -> Shared<Model> {
         exponent: 30.0,
         emission: [0.0; 3],
     };
-    Shared::new(Model {
+    let material = FileMaterial {
         name: NAME.to_owned(),
-        source: None,
-        companions: Vec::new(),
-        options: LoadOptions::default(),
-        mesh: Mesh::new(source()).expect("the coordinates are finite"),
-        materials: vec![FileMaterial {
-            name: NAME.to_owned(),
-            material,
-            opacity: 1.0,
-            texture: None,
-            maps: SurfaceMaps::from([(MapKind::Bump, SurfaceMap { texture, gain: GAIN })]),
-            unlit: false,
-            undrawn: Undrawn::new(),
-        }],
-        edge_color: None,
-    })
+        material,
+        opacity: 1.0,
+        texture: None,
+        maps: SurfaceMaps::from([(MapKind::Bump, SurfaceMap { texture, gain: GAIN })]),
+        unlit: false,
+        undrawn: Undrawn::new(),
+    };
+    let mesh = Mesh::new(source()).expect("the coordinates are finite");
+    Shared::new(Model { materials: vec![material], ..Model::of_mesh(NAME, mesh) })
 }

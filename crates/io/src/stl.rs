@@ -288,15 +288,7 @@ fn model(
     findings.note_count(kind, inside_out);
     progress.reached(1, 1)?;
     let name = Path::new(unpacked_name(file).unwrap_or(file)).file_stem().unwrap_or_default();
-    let model = Model {
-        name: name.to_string_lossy().into_owned(),
-        source: None,
-        companions: Vec::new(),
-        options: *options,
-        mesh,
-        materials: Vec::new(),
-        edge_color: None,
-    };
+    let model = Model { options: *options, ..Model::of_mesh(&name.to_string_lossy(), mesh) };
     Ok(Loaded { model, findings: joined(findings.into_list()) })
 }
 

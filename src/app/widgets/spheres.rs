@@ -18,8 +18,8 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::base::math;
 use marraztu_core::scene::{
-    Camera, Command, Item, Lens, Light, LightId, LightKind, LoadOptions, Material, MaterialChoice,
-    Mesh, MeshSource, Model, NONE, Object, ObjectId, Part, Pose, PresetId, Projection, Scene,
+    Camera, Command, Item, Lens, Light, LightId, LightKind, Material, MaterialChoice, Mesh,
+    MeshSource, Model, NONE, Object, ObjectId, Part, Pose, PresetId, Projection, Scene,
     SourceCorner, Tracked,
 };
 use marraztu_io::cam_model;
@@ -212,15 +212,10 @@ fn ball() -> Shared<Model> {
             source.polygon_parts.push(0);
         }
     }
-    Shared::new(Model {
-        name: "ball".to_owned(),
-        source: None,
-        companions: Vec::new(),
-        options: LoadOptions::default(),
-        mesh: Mesh::new(source).expect("all places are finite and all indices in range"),
-        materials: Vec::new(),
-        edge_color: None,
-    })
+    Shared::new(Model::of_mesh(
+        "ball",
+        Mesh::new(source).expect("all places are finite and all indices in range"),
+    ))
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]

@@ -134,13 +134,7 @@ fn with_unused_material(model: &Shared<Model>, rng: &mut Rng) -> Shared<Model> {
         smoothing: mesh.smoothing().clone(),
         ..MeshSource::default()
     };
-    Shared::new(Model {
-        name: model.name.clone(),
-        source: None,
-        companions: Vec::new(),
-        options: model.options,
-        mesh: Mesh::new(source).expect("it was a mesh before"),
-        materials,
-        edge_color: model.edge_color,
-    })
+    let mesh = Mesh::new(source).expect("it was a mesh before");
+    let (options, edge_color) = (model.options, model.edge_color);
+    Shared::new(Model { options, materials, edge_color, ..Model::of_mesh(&model.name, mesh) })
 }

@@ -29,20 +29,27 @@ pub struct Model {
 }
 
 impl Model {
+    /// Creates a model of this shape that comes from no file.
+    #[must_use]
+    pub fn of_mesh(name: &str, mesh: Mesh) -> Self {
+        Self {
+            name: name.to_owned(),
+            source: None,
+            companions: Vec::new(),
+            options: LoadOptions::default(),
+            mesh,
+            materials: Vec::new(),
+            edge_color: None,
+        }
+    }
+
     /// Builds a box of this side that replaces a missing or unreadable model. The box keeps the
     /// file's path and options, so saving the scene loses neither.
     #[must_use]
     pub fn placeholder(source: PathBuf, options: LoadOptions, side: f64) -> Self {
-        let stem = source.file_stem().unwrap_or(source.as_os_str());
-        Self {
-            name: stem.to_string_lossy().into_owned(),
-            source: Some(source),
-            options,
-            companions: Vec::new(),
-            mesh: Mesh::placeholder(side),
-            materials: Vec::new(),
-            edge_color: None,
-        }
+        let stem = source.file_stem().unwrap_or(source.as_os_str()).to_string_lossy();
+        let model = Self::of_mesh(&stem, Mesh::placeholder(side));
+        Self { source: Some(source), options, ..model }
     }
 
     /// Returns whether the model is a box that replaces a missing file.

@@ -7,7 +7,7 @@
 
 use std::sync::OnceLock;
 
-use super::{LoadOptions, Mesh, Model};
+use super::{Mesh, Model};
 use crate::base::Shared;
 use crate::base::once::get_or_compute;
 use solids::Builder;
@@ -72,15 +72,8 @@ impl Shape {
     pub fn model(self) -> Shared<Model> {
         static MODELS: [OnceLock<Shared<Model>>; 6] = [const { OnceLock::new() }; 6];
         let make = || {
-            Shared::new(Model {
-                name: self.name().to_owned(),
-                source: None,
-                companions: Vec::new(),
-                options: LoadOptions::default(),
-                mesh: self.mesh(),
-                materials: if self == Self::Ground { ground::materials() } else { Vec::new() },
-                edge_color: None,
-            })
+            let materials = if self == Self::Ground { ground::materials() } else { Vec::new() };
+            Shared::new(Model { materials, ..Model::of_mesh(self.name(), self.mesh()) })
         };
         get_or_compute(&MODELS[self as usize], make).clone()
     }

@@ -12,9 +12,8 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::color::Color;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{
-    Camera, CameraId, Lens, List, LoadOptions, MaterialChoice, Mesh, MeshSource, Model, NONE,
-    Object, ObjectId, Part, Pose, PresetId, Projection, Scene, Sides, SourceCorner, Surface,
-    Tracked, View,
+    Camera, CameraId, Lens, List, MaterialChoice, Mesh, MeshSource, Model, NONE, Object, ObjectId,
+    Part, Pose, PresetId, Projection, Scene, Sides, SourceCorner, Surface, Tracked, View,
 };
 use marraztu_render::Renderer;
 use marraztu_render::plan_frame;
@@ -136,15 +135,10 @@ fn model(triangles: &[Flat], side: usize, first: usize) -> Shared<Model> {
             source.colors.push([r, g, b]);
         }
     }
-    Shared::new(Model {
-        name: "triangles".to_owned(),
-        source: None,
-        companions: Vec::new(),
-        options: LoadOptions::default(),
-        mesh: Mesh::new(source).expect("numbers of pictures are finite"),
-        materials: Vec::new(),
-        edge_color: None,
-    })
+    Shared::new(Model::of_mesh(
+        "triangles",
+        Mesh::new(source).expect("numbers of pictures are finite"),
+    ))
 }
 
 /// Returns the matrix that moves a scene by a number of pixels to the right and down.

@@ -19,8 +19,8 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::base::rng::Rng;
 use marraztu_core::scene::{
-    Command, Fill, Item, LoadOptions, Mesh, MeshSource, Model, NONE, Normals, Object, Part,
-    Projection, Scene, SourceCorner, Texture, View, Wrap,
+    Command, Fill, Item, Mesh, MeshSource, Model, NONE, Normals, Object, Part, Projection, Scene,
+    SourceCorner, Texture, View, Wrap,
 };
 use marraztu_io as io;
 use marraztu_render::plan_frame;
@@ -204,15 +204,7 @@ fn wall() -> Shared<Model> {
             source.corners.push(SourceCorner { position: i, uv: i, normal: NONE });
         }
     }
-    Shared::new(Model {
-        name: "wall".to_owned(),
-        source: None,
-        companions: Vec::new(),
-        options: LoadOptions::default(),
-        mesh: Mesh::new(source).expect("these numbers are finite"),
-        materials: Vec::new(),
-        edge_color: None,
-    })
+    Shared::new(Model::of_mesh("wall", Mesh::new(source).expect("these numbers are finite")))
 }
 
 fn change(scene: &Scene, change: impl FnOnce(&mut Object)) -> Scene {

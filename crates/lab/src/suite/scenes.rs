@@ -14,9 +14,9 @@ use glam::{DMat4, DVec3};
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{
-    Aim, Camera, Light, LightId, LightKind, List, LoadOptions, Material, MaterialChoice, Mesh,
-    MeshSource, Model, NONE, Object, ObjectId, Orbit, Part, Pose, Scene, Smoothing, SourceCorner,
-    SpotOwner, Surface, Texture, Tracked, View, Wrap,
+    Aim, Camera, Light, LightId, LightKind, List, Material, MaterialChoice, Mesh, MeshSource,
+    Model, NONE, Object, ObjectId, Orbit, Part, Pose, Scene, Smoothing, SourceCorner, SpotOwner,
+    Surface, Texture, Tracked, View, Wrap,
 };
 use marraztu_io::{default_scene, empty_scene, own_model};
 
@@ -48,15 +48,10 @@ impl Maker {
 
     fn model(mut self, name: &str) -> Shared<Model> {
         self.source.parts = vec![Part { name: name.to_owned(), material: None }];
-        Shared::new(Model {
-            name: name.to_owned(),
-            source: None,
-            companions: Vec::new(),
-            options: LoadOptions::default(),
-            mesh: Mesh::new(self.source).expect("the coordinates are finite"),
-            materials: Vec::new(),
-            edge_color: None,
-        })
+        Shared::new(Model::of_mesh(
+            name,
+            Mesh::new(self.source).expect("the coordinates are finite"),
+        ))
     }
 }
 

@@ -7,9 +7,7 @@ use glam::{DMat3, DMat4, DVec3};
 use super::observer::ObserverSpace;
 use marraztu_core::base::once::get_or_compute;
 use marraztu_core::base::{Shared, color::Color, math};
-use marraztu_core::scene::{
-    Camera, LoadOptions, Mesh, MeshSource, Model, NONE, Part, SourceCorner,
-};
+use marraztu_core::scene::{Camera, Mesh, MeshSource, Model, NONE, Part, SourceCorner};
 
 /// The colour of a bulb's diamond.
 pub(super) const YELLOW: Color = Color([255, 255, 0]);
@@ -60,14 +58,6 @@ pub(super) fn diamond() -> &'static Shared<Model> {
             parts: vec![Part { name: "diamond".to_owned(), material: None }],
             ..MeshSource::default()
         });
-        Shared::new(Model {
-            name: "diamond".to_owned(),
-            source: None,
-            companions: Vec::new(),
-            options: LoadOptions::default(),
-            mesh: mesh.expect("a square is a mesh"),
-            materials: Vec::new(),
-            edge_color: None,
-        })
+        Shared::new(Model::of_mesh("diamond", mesh.expect("a square is a mesh")))
     })
 }

@@ -92,15 +92,7 @@ fn a_filter_changes_nothing_without_a_texture_nor_a_highlight_without_ks() {
         parts: vec![Part { name: String::new(), material: None }],
         ..MeshSource::default()
     };
-    let model = Shared::new(Model {
-        name: String::new(),
-        source: None,
-        companions: Vec::new(),
-        options: LoadOptions::default(),
-        mesh: Mesh::new(source).unwrap(),
-        materials: Vec::new(),
-        edge_color: None,
-    });
+    let model = Shared::new(Model::of_mesh("", Mesh::new(source).unwrap()));
     let dull = Material {
         ambient: [0.1; 3],
         diffuse: [0.5; 3],

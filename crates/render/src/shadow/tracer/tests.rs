@@ -6,9 +6,7 @@ use glam::DMat4;
 use super::*;
 use marraztu_core::base::Shared;
 use marraztu_core::base::rng::Rng;
-use marraztu_core::scene::{
-    ItemId, LoadOptions, Mesh, MeshSource, Model, NONE, ObjectId, Part, SourceCorner,
-};
+use marraztu_core::scene::{ItemId, Mesh, MeshSource, Model, NONE, ObjectId, Part, SourceCorner};
 
 type Point = [i128; 3];
 
@@ -42,15 +40,7 @@ fn mesh_of(triangles: &[[Point; 3]]) -> Shared<Model> {
     };
     let mesh = Mesh::new(source).expect("a good mesh");
     rayon::scope(|_| _ = mesh.bvh());
-    Shared::new(Model {
-        name: "mesh".to_owned(),
-        source: None,
-        companions: Vec::new(),
-        options: LoadOptions::default(),
-        mesh,
-        materials: Vec::new(),
-        edge_color: None,
-    })
+    Shared::new(Model::of_mesh("mesh", mesh))
 }
 
 fn shadows_of(casters: &[(Vec<[Point; 3]>, Point)], light: Point) -> Shadows {
