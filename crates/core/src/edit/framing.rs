@@ -12,7 +12,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::{GesturePhase, Refusal, set_transform};
+use super::{Change, GesturePhase, Refusal, set_transform};
 use crate::base::math;
 use crate::scene::{
     Camera, CameraMode, Command, Item, Lens, Object, ObjectId, Observer, Pose, Scene, Tracked, View,
@@ -69,7 +69,7 @@ const MARGIN: f64 = 1.0 / 20.0;
 ///
 /// # Errors
 /// If no object is selected, or it has no vertices.
-pub fn selection(scene: &Scene, view: &View) -> Result<Command, Refusal> {
+pub fn selection(scene: &Scene, view: &View) -> Change {
     let (id, _) = set_transform::selected_object(scene, view)?;
     objects(scene, view, &[id])
 }
@@ -78,7 +78,7 @@ pub fn selection(scene: &Scene, view: &View) -> Result<Command, Refusal> {
 ///
 /// # Errors
 /// If nothing is visible.
-pub fn all(scene: &Scene, view: &View) -> Result<Command, Refusal> {
+pub fn all(scene: &Scene, view: &View) -> Change {
     objects(scene, view, &shown(scene, view))
 }
 
@@ -94,7 +94,7 @@ fn shown(scene: &Scene, view: &View) -> Vec<ObjectId> {
 ///
 /// # Errors
 /// If no object has vertices.
-pub fn objects(scene: &Scene, view: &View, ids: &[ObjectId]) -> Result<Command, Refusal> {
+pub fn objects(scene: &Scene, view: &View, ids: &[ObjectId]) -> Change {
     framed(scene, view, ids, scene.selected_camera(view).pose.now().axes, 0.0)
 }
 
@@ -103,7 +103,7 @@ pub fn objects(scene: &Scene, view: &View, ids: &[ObjectId]) -> Result<Command, 
 ///
 /// # Errors
 /// If nothing is visible.
-pub fn models(scene: &Scene, view: &View, [right, up]: [f64; 2]) -> Result<Command, Refusal> {
+pub fn models(scene: &Scene, view: &View, [right, up]: [f64; 2]) -> Change {
     let axes =
         math::rotation(DVec3::Y, right.to_radians()) * math::rotation(DVec3::X, -up.to_radians());
     framed(scene, view, &shown(scene, view), axes, MARGIN)
@@ -138,7 +138,7 @@ pub fn models_distance(first: &Lens, r: f64) -> f64 {
 ///
 /// # Errors
 /// If no object is selected, or it has no vertices.
-pub fn side(scene: &Scene, view: &View, side: Side) -> Result<Command, Refusal> {
+pub fn side(scene: &Scene, view: &View, side: Side) -> Change {
     let (id, _) = set_transform::selected_object(scene, view)?;
     framed(scene, view, &[id], side.axes(), 0.0)
 }
@@ -180,13 +180,7 @@ pub fn lens(lens: &Lens, r: f64) -> (f64, Lens) {
 }
 
 /// Frames these objects with these camera axes. The margin is a fraction of the distance.
-fn framed(
-    scene: &Scene,
-    view: &View,
-    ids: &[ObjectId],
-    axes: DMat3,
-    margin: f64,
-) -> Result<Command, Refusal> {
+fn framed(scene: &Scene, view: &View, ids: &[ObjectId], axes: DMat3, margin: f64) -> Change {
     if view.observer == Observer::Object && view.object.is_some() {
         return Err(Refusal::ObjectLooks);
     }

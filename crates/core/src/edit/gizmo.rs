@@ -5,9 +5,9 @@
 
 use glam::{DMat3, DVec3};
 
-use super::{GesturePhase, Refusal, aiming, set_transform, steps, transform};
+use super::{Change, GesturePhase, Refusal, aiming, set_transform, steps, transform};
 use crate::base::math::{self, Axis};
-use crate::scene::{Command, Frame, ItemId, Observer, Scene, Subject, Transformation, View};
+use crate::scene::{Frame, ItemId, Observer, Scene, Subject, Transformation, View};
 
 /// The position and the axes of the selected item's handles.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -113,12 +113,7 @@ pub fn pivot(scene: &Scene, view: &View) -> Result<Pivot, Refusal> {
 ///
 /// # Errors
 /// If the item cannot be transformed in this way.
-pub fn transform(
-    scene: &Scene,
-    view: &View,
-    amount: Amount,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub fn transform(scene: &Scene, view: &View, amount: Amount, phase: GesturePhase) -> Change {
     match amount {
         Amount::Move(delta) => transform::translate(scene, view, delta, phase),
         Amount::Turn(axis, radians) => transform::rotate(scene, view, axis, radians, phase),

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use glam::{DMat4, DVec3};
 
 use super::names::Names;
-use super::{Refusal, set_transform};
+use super::{Change, Refusal, set_transform};
 use crate::base::Shared;
 use crate::scene::{
     AnchorMut, Camera, CameraId, Command, CommandError, Crease, Item, ItemId, Lens, Light, LightId,
@@ -57,7 +57,7 @@ pub fn insert_camera(scene: &Scene, model: Shared<Model>, material: MaterialChoi
 ///
 /// # Errors
 /// If it is a spot, and the owner is not in the scene.
-pub fn insert_light(scene: &Scene, kind: LightKind) -> Result<Command, Refusal> {
+pub fn insert_light(scene: &Scene, kind: LightKind) -> Change {
     put_light(scene, Light::new(&light_name(&kind), 0, kind))
 }
 
@@ -65,7 +65,7 @@ pub fn insert_light(scene: &Scene, kind: LightKind) -> Result<Command, Refusal> 
 ///
 /// # Errors
 /// If the item is gone.
-pub fn duplicate(scene: &Scene, id: ItemId, by: DVec3) -> Result<Command, Refusal> {
+pub fn duplicate(scene: &Scene, id: ItemId, by: DVec3) -> Change {
     match id {
         ItemId::Object(id) => {
             let mut object = scene.objects.get(id).ok_or(Refusal::Gone)?.clone();
@@ -94,7 +94,7 @@ pub fn duplicate(scene: &Scene, id: ItemId, by: DVec3) -> Result<Command, Refusa
 ///
 /// # Errors
 /// If the item is gone or locked, or is the last camera.
-pub fn remove(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
+pub fn remove(scene: &Scene, id: ItemId) -> Change {
     if !scene.contains(id) {
         return Err(Refusal::Gone);
     }
@@ -121,7 +121,7 @@ pub fn remove(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
 ///
 /// # Errors
 /// If the name is empty, or the item is gone.
-pub fn rename(scene: &Scene, id: ItemId, name: &str) -> Result<Command, Refusal> {
+pub fn rename(scene: &Scene, id: ItemId, name: &str) -> Change {
     let name = name.trim();
     if name.is_empty() {
         return Err(Refusal::NoName);
@@ -138,7 +138,7 @@ pub fn rename(scene: &Scene, id: ItemId, name: &str) -> Result<Command, Refusal>
 ///
 /// # Errors
 /// If the item is gone.
-pub fn reorder(scene: &Scene, id: ItemId, to: usize) -> Result<Command, Refusal> {
+pub fn reorder(scene: &Scene, id: ItemId, to: usize) -> Change {
     if scene.contains(id) { Ok(Command::Reorder { id, to }) } else { Err(Refusal::Gone) }
 }
 
@@ -146,7 +146,7 @@ pub fn reorder(scene: &Scene, id: ItemId, to: usize) -> Result<Command, Refusal>
 ///
 /// # Errors
 /// If the item is gone.
-pub fn toggle_shown(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
+pub fn toggle_shown(scene: &Scene, id: ItemId) -> Change {
     match id {
         ItemId::Object(id) => change_object(scene, id, |object| object.visible = !object.visible),
         ItemId::Camera(id) => change_camera(scene, id, |camera| camera.visible = !camera.visible),
@@ -158,7 +158,7 @@ pub fn toggle_shown(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
 ///
 /// # Errors
 /// If the item is gone.
-pub fn toggle_locked(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
+pub fn toggle_locked(scene: &Scene, id: ItemId) -> Change {
     let locked = !scene.locked.contains(&id);
     if scene.contains(id) { Ok(Command::Lock { id, locked }) } else { Err(Refusal::Gone) }
 }
@@ -167,7 +167,7 @@ pub fn toggle_locked(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
 ///
 /// # Errors
 /// If the object is gone, or does not have this part.
-pub fn toggle_part(scene: &Scene, id: ObjectId, part: u32) -> Result<Command, Refusal> {
+pub fn toggle_part(scene: &Scene, id: ObjectId, part: u32) -> Change {
     let object = scene.objects.get(id).ok_or(Refusal::Gone)?;
     if part as usize >= object.model.mesh.parts().len() {
         return Err(Refusal::Gone);
@@ -184,7 +184,7 @@ pub fn toggle_part(scene: &Scene, id: ObjectId, part: u32) -> Result<Command, Re
 ///
 /// # Errors
 /// If the object is gone, or has only one part or too many parts.
-pub fn split(scene: &Scene, id: ObjectId) -> Result<Command, Refusal> {
+pub fn split(scene: &Scene, id: ObjectId) -> Change {
     let object = scene.objects.get(id).ok_or(Refusal::Gone)?;
     let at = scene.objects.position(id).ok_or(Refusal::Gone)?;
     let mesh = &object.model.mesh;
@@ -230,7 +230,7 @@ fn part_names(scene: &Scene, object: &Object, parts: &BTreeSet<u32>) -> Vec<Stri
 ///
 /// # Errors
 /// If the lens is invalid, or the camera is gone.
-pub fn set_lens(scene: &Scene, id: CameraId, lens: Lens) -> Result<Command, Refusal> {
+pub fn set_lens(scene: &Scene, id: CameraId, lens: Lens) -> Change {
     if !lens.is_valid() {
         return Err(CommandError::Lens.into());
     }
@@ -258,7 +258,7 @@ pub fn why_no_crease(model: &Model, file_normals: bool) -> Option<&'static str> 
 ///
 /// # Errors
 /// If the object is gone, or the angle has no effect on it.
-pub fn set_crease(scene: &Scene, id: ObjectId, crease: Crease) -> Result<Command, Refusal> {
+pub fn set_crease(scene: &Scene, id: ObjectId, crease: Crease) -> Change {
     let object = scene.objects.get(id).ok_or(Refusal::Gone)?;
     if let Some(reason) = why_no_crease(&object.model, object.file_normals) {
         return Err(Refusal::NoCrease(reason));
@@ -276,11 +276,7 @@ pub fn set_crease(scene: &Scene, id: ObjectId, crease: Crease) -> Result<Command
 ///
 /// # Errors
 /// If the object is gone.
-pub fn change_object(
-    scene: &Scene,
-    id: ObjectId,
-    change: impl FnOnce(&mut Object),
-) -> Result<Command, Refusal> {
+pub fn change_object(scene: &Scene, id: ObjectId, change: impl FnOnce(&mut Object)) -> Change {
     let mut object = scene.objects.get(id).ok_or(Refusal::Gone)?.clone();
     change(&mut object);
     Ok(Command::Replace(Item::Object(id, Box::new(object))))
@@ -301,11 +297,7 @@ pub fn change_all_objects(scene: &Scene, change: impl Fn(&mut Object)) -> Comman
 ///
 /// # Errors
 /// If the camera is gone.
-pub fn change_camera(
-    scene: &Scene,
-    id: CameraId,
-    change: impl FnOnce(&mut Camera),
-) -> Result<Command, Refusal> {
+pub fn change_camera(scene: &Scene, id: CameraId, change: impl FnOnce(&mut Camera)) -> Change {
     let mut camera = scene.cameras.get(id).ok_or(Refusal::Gone)?.clone();
     change(&mut camera);
     Ok(Command::Replace(Item::Camera(id, Box::new(camera))))
@@ -315,11 +307,7 @@ pub fn change_camera(
 ///
 /// # Errors
 /// If the light is gone.
-pub fn change_light(
-    scene: &Scene,
-    id: LightId,
-    change: impl FnOnce(&mut Light),
-) -> Result<Command, Refusal> {
+pub fn change_light(scene: &Scene, id: LightId, change: impl FnOnce(&mut Light)) -> Change {
     try_change_light(scene, id, |light| {
         change(light);
         Ok(())
@@ -331,7 +319,7 @@ pub(super) fn try_change_light(
     scene: &Scene,
     id: LightId,
     change: impl FnOnce(&mut Light) -> Result<(), Refusal>,
-) -> Result<Command, Refusal> {
+) -> Change {
     let mut light = scene.lights.get(id).ok_or(Refusal::Gone)?.clone();
     change(&mut light)?;
     Ok(Command::Replace(Item::Light(id, Box::new(light))))
@@ -346,7 +334,7 @@ pub(super) fn put_camera(scene: &Scene, mut camera: Camera) -> Command {
 }
 
 /// Adds a light at the end of the list, in the lowest free slot.
-pub(super) fn put_light(scene: &Scene, mut light: Light) -> Result<Command, Refusal> {
+pub(super) fn put_light(scene: &Scene, mut light: Light) -> Change {
     if let Some(owner) = light.kind.owner() {
         check_owner(scene, owner)?;
     }

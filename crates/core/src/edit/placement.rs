@@ -12,9 +12,9 @@ use glam::{DMat3, DMat4, DVec3};
 use super::angles;
 use super::set_transform::{self, LightPlace};
 use super::transform::effective_pose;
-use super::{GesturePhase, Refusal};
+use super::{Change, GesturePhase, Refusal};
 use crate::base::math::{self, Axis};
-use crate::scene::{Aim, CameraId, CameraMode, Command, LightId, ObjectId, Pose, Scene, View};
+use crate::scene::{Aim, CameraId, CameraMode, LightId, ObjectId, Pose, Scene, View};
 
 /// Returns the position of an object's origin.
 #[must_use]
@@ -75,7 +75,7 @@ pub fn object_translation(
     id: ObjectId,
     to: DVec3,
     phase: GesturePhase,
-) -> Result<Command, Refusal> {
+) -> Change {
     let m = placement(scene, id)?;
     set_transform::object(scene, view, id, DMat4 { w_axis: to.extend(1.0), ..m }, phase)
 }
@@ -90,7 +90,7 @@ pub fn object_turn(
     id: ObjectId,
     degrees: DVec3,
     phase: GesturePhase,
-) -> Result<Command, Refusal> {
+) -> Change {
     let m = placement(scene, id)?;
     let [x, y, z] = turns(degrees)?;
     let linear = x * y * z * turn(&m).transpose() * DMat3::from_mat4(m);
@@ -107,7 +107,7 @@ pub fn object_scale(
     id: ObjectId,
     to: DVec3,
     phase: GesturePhase,
-) -> Result<Command, Refusal> {
+) -> Change {
     let m = placement(scene, id)?;
     let (old, turn) = (scale(&m), turn(&m));
     let linear = DMat3::from_mat4(m);
@@ -131,13 +131,7 @@ pub fn object_scale(
 ///
 /// # Errors
 /// If the placement is flat or not finite, or the object is gone.
-pub fn object(
-    scene: &Scene,
-    view: &View,
-    id: ObjectId,
-    to: DMat4,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub fn object(scene: &Scene, view: &View, id: ObjectId, to: DMat4, phase: GesturePhase) -> Change {
     if to.is_finite() && !math::has_full_rank(DMat3::from_mat4(to)) {
         return Err(Refusal::Flat);
     }
@@ -181,7 +175,7 @@ pub fn camera_eye(
     id: CameraId,
     to: DVec3,
     phase: GesturePhase,
-) -> Result<Command, Refusal> {
+) -> Change {
     let view = &View { camera: id, ..view.clone() };
     let pose = effective_pose(scene, view);
     let axes = match set_transform::analysis_centre(scene, view) {
@@ -202,7 +196,7 @@ pub fn camera_turn(
     id: CameraId,
     degrees: DVec3,
     phase: GesturePhase,
-) -> Result<Command, Refusal> {
+) -> Change {
     let view = &View { camera: id, ..view.clone() };
     let [pitch, yaw, roll] = turns(DVec3::new(degrees.y, degrees.x, degrees.z))?;
     let axes = yaw * pitch * roll;
@@ -218,13 +212,7 @@ pub fn camera_turn(
 ///
 /// # Errors
 /// If the numbers are not finite, or the camera is gone.
-pub fn camera(
-    scene: &Scene,
-    id: CameraId,
-    eye: DVec3,
-    axes: DMat3,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub fn camera(scene: &Scene, id: CameraId, eye: DVec3, axes: DMat3, phase: GesturePhase) -> Change {
     set_transform::pose(scene, id, Pose { eye, axes, mode: CameraMode::Fly }, phase)
 }
 
@@ -232,12 +220,7 @@ pub fn camera(
 ///
 /// # Errors
 /// If the light's position cannot be set, or the numbers are not finite.
-pub fn light_position(
-    scene: &Scene,
-    id: LightId,
-    to: DVec3,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub fn light_position(scene: &Scene, id: LightId, to: DVec3, phase: GesturePhase) -> Change {
     let light = scene.lights.get(id).ok_or(Refusal::Gone)?;
     let place = match set_transform::place_of(light)? {
         LightPlace::Aim(aim) => LightPlace::Aim(Aim { position: to, ..aim }),
@@ -250,12 +233,7 @@ pub fn light_position(
 ///
 /// # Errors
 /// If the light's direction cannot be set, or `to` has length 0.
-pub fn light_direction(
-    scene: &Scene,
-    id: LightId,
-    to: DVec3,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub fn light_direction(scene: &Scene, id: LightId, to: DVec3, phase: GesturePhase) -> Change {
     let light = scene.lights.get(id).ok_or(Refusal::Gone)?;
     if to == DVec3::ZERO {
         return Err(Refusal::NoDirection);

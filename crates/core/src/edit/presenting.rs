@@ -5,7 +5,7 @@
 //! orbits it.
 
 use super::items::insert_objects;
-use super::{Refusal, framing, lighting, selection};
+use super::{Change, Refusal, framing, lighting, selection};
 use crate::scene::{
     CameraMode, Command, Item, ItemId, Object, ObjectId, Observer, Pose, Scene, Subject, View,
 };
@@ -46,7 +46,7 @@ pub fn alone(scene: &Scene, view: &View, objects: Vec<Object>) -> Result<(Comman
 /// Lets the camera orbit an object from its current pose. Aiming the camera would move the object
 /// out of the middle of the picture, since the mean of its vertices is not the centre of its
 /// sphere.
-fn analysis(scene: &Scene, view: &View, id: ObjectId) -> Result<Command, Refusal> {
+fn analysis(scene: &Scene, view: &View, id: ObjectId) -> Change {
     let mut camera = scene.cameras.get(view.camera).ok_or(Refusal::Gone)?.clone();
     let mode = CameraMode::Analysis { target: id };
     camera.pose = camera.pose.replaced(Pose { mode, ..*camera.pose.now() });

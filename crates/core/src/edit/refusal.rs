@@ -1,6 +1,9 @@
 //! Refusals: the reasons why a request cannot be carried out, worded for the status line.
 
-use crate::scene::CommandError;
+use crate::scene::{Command, CommandError};
+
+/// The command that makes a change, or the reason why it is refused.
+pub type Change = Result<Command, Refusal>;
 
 /// The reason why a request is refused. The scene is then unchanged.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]

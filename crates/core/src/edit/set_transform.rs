@@ -5,7 +5,7 @@
 
 use glam::{DMat3, DMat4, DVec3};
 
-use super::{GesturePhase, Refusal};
+use super::{Change, GesturePhase, Refusal};
 use crate::base::math;
 use crate::scene::{
     Aim, Anchor, AnchorMut, CameraId, CameraMode, Command, CommandError, Item, ItemId, Lens, Light,
@@ -45,7 +45,7 @@ pub(super) fn object(
     id: ObjectId,
     placement: DMat4,
     phase: GesturePhase,
-) -> Result<Command, Refusal> {
+) -> Change {
     let before = scene.objects.get(id).ok_or(Refusal::Gone)?;
     object_placed(scene, view, id, phase.apply(&before.placement, placement))
 }
@@ -56,7 +56,7 @@ pub(super) fn object_placed(
     view: &View,
     id: ObjectId,
     placement: Tracked<DMat4>,
-) -> Result<Command, Refusal> {
+) -> Change {
     if !placement.now().is_finite() {
         return Err(Refusal::TooLarge);
     }
@@ -82,12 +82,7 @@ pub(super) fn object_placed(
 }
 
 /// Gives the camera `id` another pose, with its axes made orthonormal.
-pub(super) fn pose(
-    scene: &Scene,
-    id: CameraId,
-    pose: Pose,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub(super) fn pose(scene: &Scene, id: CameraId, pose: Pose, phase: GesturePhase) -> Change {
     let lens = scene.cameras.get(id).ok_or(Refusal::Gone)?.lens;
     pose_and_lens(scene, id, pose, lens, phase)
 }
@@ -99,7 +94,7 @@ pub(super) fn pose_and_lens(
     pose: Pose,
     lens: Lens,
     phase: GesturePhase,
-) -> Result<Command, Refusal> {
+) -> Change {
     let mut camera = scene.cameras.get(id).ok_or(Refusal::Gone)?.clone();
     unlocked(scene, ItemId::Camera(id))?;
     if !(pose.eye.is_finite() && pose.axes.is_finite()) {
@@ -193,12 +188,7 @@ pub fn transformation_of(light: &Light, chosen: Transformation) -> Result<Transf
 }
 
 /// Gives the light `id` another position or direction; `place` must suit the kind of light.
-pub(super) fn light(
-    scene: &Scene,
-    id: LightId,
-    place: LightPlace,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub(super) fn light(scene: &Scene, id: LightId, place: LightPlace, phase: GesturePhase) -> Change {
     let mut light = scene.lights.get(id).ok_or(Refusal::NoLight)?.clone();
     unlocked(scene, ItemId::Light(id))?;
     // Checked before the light is changed: directions have length 1, positions are finite.

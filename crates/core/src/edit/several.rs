@@ -6,7 +6,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{Refusal, items, placement, selection};
+use super::{Change, Refusal, items, placement, selection};
 use crate::scene::{
     Anchor, AnchorMut, Camera, Command, Item, ItemId, LIGHT_NUMBERS, Light, LightKind, Object,
     Scene, SpotOwner, Subject, Tracked, View,
@@ -48,8 +48,8 @@ pub fn each(
     scene: &Scene,
     view: &View,
     others: &[ItemId],
-    act: impl Fn(&Scene, &View) -> Result<Command, Refusal>,
-) -> Result<Command, Refusal> {
+    act: impl Fn(&Scene, &View) -> Change,
+) -> Change {
     if others.is_empty() {
         return act(scene, view);
     }
@@ -90,7 +90,7 @@ fn as_if_selected(view: &View, id: ItemId) -> View {
 ///
 /// # Errors
 /// If the selected item is gone.
-pub fn toggle_shown(scene: &Scene, view: &View, others: &[ItemId]) -> Result<Command, Refusal> {
+pub fn toggle_shown(scene: &Scene, view: &View, others: &[ItemId]) -> Change {
     let shown = |scene: &Scene, id| match id {
         ItemId::Object(id) => scene.objects.get(id).is_some_and(|object| object.visible),
         ItemId::Camera(id) => scene.cameras.get(id).is_some_and(|camera| camera.visible),
@@ -109,7 +109,7 @@ pub fn toggle_shown(scene: &Scene, view: &View, others: &[ItemId]) -> Result<Com
 ///
 /// # Errors
 /// If the selected item is gone.
-pub fn toggle_locked(scene: &Scene, view: &View, others: &[ItemId]) -> Result<Command, Refusal> {
+pub fn toggle_locked(scene: &Scene, view: &View, others: &[ItemId]) -> Change {
     let first = selection::selected(view).ok_or(Refusal::Gone)?;
     let before = scene.locked.contains(&first);
     let alike = |id: &ItemId| scene.locked.contains(id) == before;

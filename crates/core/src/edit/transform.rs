@@ -11,7 +11,7 @@ use glam::{DMat3, DMat4, DVec3};
 
 use super::set_transform::{self, LightPlace};
 pub use super::set_transform::{aimed_again, transformation_of};
-use super::{GesturePhase, Refusal, steps};
+use super::{Change, GesturePhase, Refusal, steps};
 use crate::base::math::{self, Axis};
 use crate::scene::{
     Aim, AnchorMut, CameraMode, Command, Frame, Item, ItemId, Orbit, Pose, Scene, SpotOwner,
@@ -42,13 +42,7 @@ impl Sign {
 ///
 /// # Errors
 /// If the item cannot be transformed in this way.
-pub fn step(
-    scene: &Scene,
-    view: &View,
-    axis: Axis,
-    sign: Sign,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub fn step(scene: &Scene, view: &View, axis: Axis, sign: Sign, phase: GesturePhase) -> Change {
     let along = || axis.unit() * sign.of(distance(scene, view, axis));
     let radians = sign.of(view.steps.rotation.to_radians());
     match view.subject {
@@ -107,12 +101,7 @@ pub fn distance(scene: &Scene, view: &View, axis: Axis) -> f64 {
 ///
 /// # Errors
 /// If the item cannot be moved.
-pub fn translate(
-    scene: &Scene,
-    view: &View,
-    delta: DVec3,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub fn translate(scene: &Scene, view: &View, delta: DVec3, phase: GesturePhase) -> Change {
     match view.subject {
         Subject::Object => transform(scene, view, DMat4::from_translation(delta), phase),
         Subject::Camera => {
@@ -152,7 +141,7 @@ pub fn rotate(
     axis: DVec3,
     radians: f64,
     phase: GesturePhase,
-) -> Result<Command, Refusal> {
+) -> Change {
     let turn = |axis| set_transform::turn(axis, radians);
     match view.subject {
         Subject::Object => transform(scene, view, DMat4::from_mat3(turn(axis)?), phase),
@@ -182,12 +171,7 @@ pub fn rotate(
 ///
 /// # Errors
 /// If the subject is not objects, or the object would become flat.
-pub fn scale(
-    scene: &Scene,
-    view: &View,
-    factor: f64,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub fn scale(scene: &Scene, view: &View, factor: f64, phase: GesturePhase) -> Change {
     stretch(scene, view, DVec3::splat(factor), phase)
 }
 
@@ -196,12 +180,7 @@ pub fn scale(
 ///
 /// # Errors
 /// If the subject is not objects, or the object would become flat.
-pub fn stretch(
-    scene: &Scene,
-    view: &View,
-    factors: DVec3,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub fn stretch(scene: &Scene, view: &View, factors: DVec3, phase: GesturePhase) -> Change {
     match view.subject {
         Subject::Object => transform(scene, view, DMat4::from_scale(factors), phase),
         Subject::Camera => Err(Refusal::CameraScaled),
@@ -213,7 +192,7 @@ pub fn stretch(
 ///
 /// # Errors
 /// If the item was never transformed.
-pub fn take_back(scene: &Scene, view: &View) -> Result<Command, Refusal> {
+pub fn take_back(scene: &Scene, view: &View) -> Change {
     let nothing = Refusal::NothingToTakeBack;
     match view.subject {
         Subject::Object => {
@@ -248,7 +227,7 @@ pub fn take_back(scene: &Scene, view: &View) -> Result<Command, Refusal> {
 ///
 /// # Errors
 /// If no object is selected.
-pub fn toggle_analysis(scene: &Scene, view: &View) -> Result<Command, Refusal> {
+pub fn toggle_analysis(scene: &Scene, view: &View) -> Change {
     let pose = effective_pose(scene, view);
     match pose.mode {
         CameraMode::Analysis { .. } => {
@@ -264,12 +243,7 @@ pub fn toggle_analysis(scene: &Scene, view: &View) -> Result<Command, Refusal> {
 }
 
 /// Multiplies the placement of the selected object by `t`, on the side that the frame requires.
-fn transform(
-    scene: &Scene,
-    view: &View,
-    t: DMat4,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+fn transform(scene: &Scene, view: &View, t: DMat4, phase: GesturePhase) -> Change {
     let (id, object) = set_transform::selected_object(scene, view)?;
     let m = *object.placement.now();
     let placement = match view.frame {
