@@ -3,10 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use clap::builder::{PathBufValueParser, TypedValueParser};
 use marraztu::plots::{self, PagePicture};
 use marraztu_core::base::image::Picture;
-use marraztu_io::{self as io, PICTURE_FORMATS, PictureFormat, Sources};
+use marraztu_io::{self as io, PICTURE_FORMATS, Sources};
 use marraztu_lab::error::amplified;
 use marraztu_lab::flip::Perceived;
 
@@ -14,6 +13,7 @@ use super::failure::Failure;
 use super::page::{check_page, write_page};
 use super::say;
 use super::talk::print;
+use super::values::picture_file;
 
 /// The exit status if the pictures cannot be compared.
 const INCOMPARABLE: u8 = 2;
@@ -50,8 +50,7 @@ pub(crate) struct Compare {
     #[arg(long, value_name = "LIMIT", value_parser = flip)]
     flip: Option<f64>,
     /// The picture of differences to write, amplified 16 times
-    #[arg(short, long, value_name = "FILE")]
-    #[arg(value_parser = PathBufValueParser::new().try_map(picture))]
+    #[arg(short, long, value_name = "FILE", value_parser = picture_file())]
     out: Option<PathBuf>,
     /// A page to write, with the measures, a slider between the pictures, and their difference
     #[arg(long, value_name = "FILE")]
@@ -192,10 +191,6 @@ impl Bounded for u16 {
 /// Returns the pixels with 16 bits per channel.
 fn widened(picture: &Picture) -> Vec<[u16; 4]> {
     picture.pixels().iter().map(|pixel| pixel.map(|byte| u16::from(byte) * 257)).collect()
-}
-
-fn picture(path: PathBuf) -> Result<PathBuf, String> {
-    PictureFormat::of(&path).map(|_| path)
 }
 
 fn flip(text: &str) -> Result<f64, String> {

@@ -15,9 +15,8 @@ use marraztu_render::{
     LayerNames, Renderer, Unseen, fitted_exposure, plan_frame, unseen, without_ground,
 };
 
-use super::accuracy::Accuracy;
 use super::arguments::{
-    Exposure, PictureArguments, Reading, Render, Seeing, ShadowSlots, Slots, Surfaces,
+    Exposure, PictureArguments, Render, SceneArguments, Seeing, ShadowSlots, Slots, Surfaces,
 };
 use super::bar::Bar;
 use super::cameras::{CAMERAS, CameraFrame, check_cameras, write_cameras};
@@ -203,35 +202,27 @@ fn tell_unseen(renderer: &mut Renderer, shot: &Shot) {
 
 /// Loads the files, applies the options, and reports findings.
 pub(super) fn stage(picture: &PictureArguments) -> Result<Stage, Failure> {
-    let PictureArguments { files, reading, surfaces, seeing, accuracy, talk, threads, .. } =
-        picture;
+    let PictureArguments { files, scene, accuracy, talk, threads, .. } = picture;
     talk.apply();
     if threads.is_some() {
         draw_along(*threads);
     }
-    let mut stage = staged(files, reading, surfaces, seeing, &Accuracy::default())?;
+    let mut stage = staged(files, scene)?;
     stage.settings = accuracy.of_file(&stage.settings);
     Ok(stage)
 }
 
 /// Loads the scene of these files and applies the options.
-pub(crate) fn staged(
-    files: &[PathBuf],
-    reading: &Reading,
-    surfaces: &Surfaces,
-    seeing: &Seeing,
-    accuracy: &Accuracy,
-) -> Result<Stage, Failure> {
-    let mut stage = Stage::of(files, reading, Watch::Bar)?;
-    cover(&mut stage, surfaces)?;
+pub(crate) fn staged(files: &[PathBuf], scene: &SceneArguments) -> Result<Stage, Failure> {
+    let mut stage = Stage::of(files, &scene.reading, Watch::Bar)?;
+    cover(&mut stage, &scene.surfaces)?;
     for finding in &stage.findings {
         note(finding);
     }
-    look(&mut stage, seeing, &Aim::Options)?;
+    look(&mut stage, &scene.seeing, &Aim::Options)?;
     for text in &stage.notes {
         note(text);
     }
-    stage.settings = accuracy.of(&stage.settings);
     Ok(stage)
 }
 

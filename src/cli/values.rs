@@ -1,9 +1,11 @@
 //! Parses option values.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
+use clap::builder::{PathBufValueParser, TypedValueParser};
 use marraztu_core::base::color::Color;
 use marraztu_core::base::image::Size;
+use marraztu_io::PictureFormat;
 
 /// The longest side of a picture.
 const LONGEST_SIDE: usize = 16_384;
@@ -16,6 +18,11 @@ pub(crate) fn is_standard(file: &Path) -> bool {
 /// Returns whether a file name refers to the terminal.
 pub(crate) fn is_terminal(file: &Path) -> bool {
     file == Path::new("terminal")
+}
+
+/// Returns a parser of the names of pictures, which checks their extensions.
+pub(super) fn picture_file() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path| PictureFormat::of(&path).map(|_| path))
 }
 
 /// Parses a picture size: "800x600", or "800" for a square.

@@ -58,7 +58,7 @@ impl Stamper {
     pub(super) fn stamp(&self, job: &Job) -> Option<String> {
         let model = self.model(&job.row.file)?;
         let (camera, size) = (job.camera(), job.size());
-        let texture = job.row.parsed.options.surfaces.texture.as_deref();
+        let texture = job.row.parsed.options.scene.surfaces.texture.as_deref();
         let texture = texture.map(|path| self.file(path).unwrap_or_default());
         let text = format!(
             "{VERSION}\n{}\n{}\n{}{:?}\n{}x{}\n{}\n{texture:?}\n",

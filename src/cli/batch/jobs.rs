@@ -230,19 +230,19 @@ impl RowReader {
             // An option of the command line that conflicts is not a column, but named as well.
             wrong(option.as_deref(), &reason)
         })?;
-        if let Some(texture) = &parsed.options.surfaces.texture {
+        if let Some(texture) = &parsed.options.scene.surfaces.texture {
             let found = io::check_file(texture);
             found.map_err(|error| wrong(Some("texture"), &error.to_string()))?;
         }
-        if is_scene(&file) && parsed.options.reading.is_given() {
+        if is_scene(&file) && parsed.options.scene.reading.is_given() {
             return Err(wrong(
                 None,
                 "--up, --scale, --flip-winding, --crease and --bump-maps apply to models, and this \
                  is a scene",
             ));
         }
-        let has_camera =
-            parsed.options.seeing.camera.is_some() || parsed.options.seeing.from.is_some();
+        let seeing = &parsed.options.scene.seeing;
+        let has_camera = seeing.camera.is_some() || seeing.from.is_some();
         let views = match views {
             Some(_) if has_camera => {
                 return Err(wrong(Some("views"), "it replaces --camera and --from: give one"));

@@ -357,7 +357,7 @@ impl Attempt<'_> {
         let mut stage = Stage::clone(&*loaded?);
         let options = &row.parsed.options;
         let failed = |failure: Failure| Fault::of(&failure);
-        look(&mut stage, &options.seeing, &job.camera().aim).map_err(failed)?;
+        look(&mut stage, &options.scene.seeing, &job.camera().aim).map_err(failed)?;
         stage.settings = options.accuracy.of_file(&stage.settings);
         let findings = stage.findings.iter().map(ToString::to_string);
         let findings = findings.chain(stage.notes.iter().cloned()).collect();
