@@ -104,26 +104,20 @@ pub enum LightAt {
 pub enum Samples {
     /// One, at the pixel's centre.
     #[default]
-    One,
+    One = 1,
     /// Four.
-    Four,
+    Four = 4,
     /// Sixteen.
-    Sixteen,
+    Sixteen = 16,
     /// Sixty-four.
-    SixtyFour,
+    SixtyFour = 64,
     /// Two hundred and fifty-six: the ideal.
-    TwoFiftySix,
+    TwoFiftySix = 256,
 }
 
 impl From<Samples> for u16 {
     fn from(samples: Samples) -> Self {
-        match samples {
-            Samples::One => 1,
-            Samples::Four => 4,
-            Samples::Sixteen => 16,
-            Samples::SixtyFour => 64,
-            Samples::TwoFiftySix => 256,
-        }
+        samples as Self
     }
 }
 
@@ -141,19 +135,10 @@ impl Samples {
     pub const ALL: [Self; 5] =
         [Self::One, Self::Four, Self::Sixteen, Self::SixtyFour, Self::TwoFiftySix];
 
-    /// The steps of refinement while nothing moves. The ideal would take too long.
-    pub const REFINING: [Self; 4] = [Self::One, Self::Four, Self::Sixteen, Self::SixtyFour];
-
     /// The number of samples.
     #[must_use]
     pub const fn count(self) -> u32 {
-        match self {
-            Self::One => 1,
-            Self::Four => 4,
-            Self::Sixteen => 16,
-            Self::SixtyFour => 64,
-            Self::TwoFiftySix => 256,
-        }
+        self as u32
     }
 }
 
