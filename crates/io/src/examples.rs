@@ -163,10 +163,7 @@ fn content_of(name: &str) -> Option<Cow<'static, [u8]>> {
     std::fs::read(Path::new(HOSTED).join(name)).ok().map(Cow::Owned)
 }
 
-/// Parses a model of the examples from its `content`.
-///
-/// # Errors
-/// If `progress` is cancelled.
+/// Parses a model of the examples from its `content`. Fails if `progress` is cancelled.
 pub(super) fn model(
     path: &Path,
     content: &[u8],
@@ -178,10 +175,7 @@ pub(super) fn model(
     Ok(loaded)
 }
 
-/// Decodes a texture of the examples from its `content`.
-///
-/// # Errors
-/// If it is not a picture.
+/// Decodes a texture of the examples from its `content`. Fails if it is not a picture.
 pub(super) fn texture(path: &Path, content: &[u8]) -> Result<Shared<Texture>, LoadError> {
     let not_a_picture = || LoadError::file(&shown(path), "the picture cannot be decoded");
     let picture = own_picture(content).ok_or_else(not_a_picture)?.into();

@@ -41,10 +41,8 @@ impl<R: Read> Read for Unpacked<R> {
     }
 }
 
-/// Reads and unpacks the model at `path`, named `file` in messages.
-///
-/// # Errors
-/// If it cannot be read, or is damaged.
+/// Reads and unpacks the model at `path`, named `file` in messages. Fails if it cannot be read, or
+/// is damaged.
 pub(super) fn unpacked(path: &Path, file: &str) -> Result<Vec<u8>, LoadError> {
     let (packed, _) = open(path, MOST_BYTES)?;
     let mut text = Vec::new();

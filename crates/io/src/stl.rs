@@ -58,10 +58,8 @@ pub fn is_stl(path: &Path) -> bool {
         || size.is_some_and(|size| head().is_some_and(|head| has_stl_content(&head, size)))
 }
 
-/// Loads an STL file. A file with the extension `.gz` is unpacked.
-///
-/// # Errors
-/// If it cannot be read, is damaged or has no triangles, or `progress` is cancelled.
+/// Loads an STL file. A file with the extension `.gz` is unpacked. Fails if it cannot be read, is
+/// damaged or has no triangles, or `progress` is cancelled.
 pub(super) fn load(
     path: &Path,
     options: &LoadOptions,
@@ -136,10 +134,7 @@ impl Solids {
     }
 }
 
-/// Parses an STL file.
-///
-/// # Errors
-/// If it is damaged or has no triangles, or `progress` is cancelled.
+/// Parses an STL file. Fails if it is damaged or has no triangles, or `progress` is cancelled.
 pub(super) fn parse(
     bytes: &[u8],
     file: &str,

@@ -112,11 +112,8 @@ pub(super) struct Read {
 }
 
 impl Pictures {
-    /// Returns the picture of a file.
-    ///
-    /// # Errors
-    /// If it cannot be read, is not a picture, or has more than `most` texels. The size is checked
-    /// before decoding.
+    /// Returns the picture of a file. Fails if it cannot be read, is not a picture, or has more
+    /// than `most` texels. The size is checked before decoding.
     pub(super) fn read(&mut self, path: &Path, most: usize) -> Result<Read, LoadError> {
         // One file may have several paths.
         let file = std::fs::canonicalize(path).unwrap_or_else(|_missing| path.to_owned());
@@ -136,10 +133,8 @@ impl Pictures {
         read
     }
 
-    /// Returns the texture of a file. It repeats, and uses the model's texture coordinates.
-    ///
-    /// # Errors
-    /// If the file cannot be read or is not a picture.
+    /// Returns the texture of a file. It repeats, and uses the model's texture coordinates. Fails
+    /// if the file cannot be read or is not a picture.
     pub(super) fn texture(
         &mut self,
         path: &Path,

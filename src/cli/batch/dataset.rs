@@ -157,10 +157,8 @@ fn runs(size: Size, mask: &[bool]) -> Vec<usize> {
 /// A file of a data set.
 type File = (PathBuf, Vec<u8>);
 
-/// Describes a picture, and encodes its masks.
-///
-/// # Errors
-/// If the batch ends, or BOP cannot describe the pose of an object.
+/// Describes a picture, and encodes its masks. Fails if the batch ends, or BOP cannot describe the
+/// pose of an object.
 pub(super) fn image(
     dataset: Dataset,
     renderer: &mut Renderer,
@@ -246,10 +244,7 @@ fn nine(matrix: DMat3) -> [f64; 9] {
     matrix.transpose().to_cols_array()
 }
 
-/// Writes the tables of a data set.
-///
-/// # Errors
-/// If a file cannot be written.
+/// Writes the tables of a data set. Fails if a file cannot be written.
 pub(super) fn write_tables(
     dataset: Dataset,
     folder: &Path,

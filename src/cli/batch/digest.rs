@@ -124,10 +124,7 @@ fn once<T: Clone>(
     value.get_or_insert_with(compute).clone()
 }
 
-/// Returns the SHA-256 of a file in hexadecimal digits.
-///
-/// # Errors
-/// If it cannot be read.
+/// Returns the SHA-256 of a file in hexadecimal digits. Fails if it cannot be read.
 pub(super) fn hash_of_file(path: &Path) -> std::io::Result<String> {
     io::check_file(path).map_err(std::io::Error::other)?;
     let mut file = File::open(path)?;

@@ -113,10 +113,8 @@ impl OptionParser {
         self.names.contains_key(name)
     }
 
-    /// Returns options with one of them replaced.
-    ///
-    /// # Errors
-    /// If a switch has a value that is neither true nor false.
+    /// Returns options with one of them replaced. Fails if a switch has a value that is neither
+    /// true nor false.
     pub(super) fn with(
         &self,
         texts: &OptionTexts,
@@ -144,10 +142,7 @@ impl OptionParser {
         Ok(texts)
     }
 
-    /// Parses options.
-    ///
-    /// # Errors
-    /// If a value is invalid, or options conflict.
+    /// Parses options. Fails if a value is invalid, or options conflict.
     pub(super) fn parse(&mut self, texts: &OptionTexts) -> Result<Arc<Parsed>, WrongOption> {
         if let Some(parsed) = self.parsed.get(texts) {
             return Ok(Arc::clone(parsed));

@@ -142,10 +142,7 @@ struct Times {
 const LONGEST: u64 = 1 << 24;
 
 /// Checks that a report, or a file of times, may be written to `path`: an existing file is one, or
-/// empty, and not an input.
-///
-/// # Errors
-/// If it is another file.
+/// empty, and not an input. Fails if it is another file.
 pub(crate) fn check_report(path: &Path, sources: &Sources) -> Result<(), Failure> {
     sources.spare(path)?;
     // Writing refuses what is not a file.
@@ -167,10 +164,7 @@ pub(crate) fn check_report(path: &Path, sources: &Sources) -> Result<(), Failure
     )))
 }
 
-/// Begins a file, and creates its folder.
-///
-/// # Errors
-/// If it cannot be created.
+/// Begins a file, and creates its folder. Fails if it cannot be created.
 pub(crate) fn begin(path: &Path) -> Result<NewFile, SaveError> {
     if let Some(folder) = path.parent() {
         // If this fails, so does creating the file, with the reason.
@@ -193,10 +187,8 @@ pub(super) struct Reporter<'a> {
 }
 
 impl<'a> Reporter<'a> {
-    /// Begins a report. `all` is the number of jobs in the whole list.
-    ///
-    /// # Errors
-    /// If a file cannot be created.
+    /// Begins a report. `all` is the number of jobs in the whole list. Fails if a file cannot be
+    /// created.
     pub(super) fn begin(
         jobs: &'a [Job],
         all: usize,
@@ -213,10 +205,7 @@ impl<'a> Reporter<'a> {
         })
     }
 
-    /// Adds the result of a job.
-    ///
-    /// # Errors
-    /// If a file cannot be written.
+    /// Adds the result of a job. Fails if a file cannot be written.
     pub(super) fn add(&mut self, outcome: &Outcome) -> Result<(), SaveError> {
         let job = &self.jobs[outcome.job];
         if let (Some(times), false) = (&mut self.times, outcome.result == Err(Fault::Cancelled)) {
@@ -247,10 +236,8 @@ impl<'a> Reporter<'a> {
         Ok(())
     }
 
-    /// Completes the report: jobs without a result are cancelled.
-    ///
-    /// # Errors
-    /// If a file cannot be written.
+    /// Completes the report: jobs without a result are cancelled. Fails if a file cannot be
+    /// written.
     pub(super) fn finish(mut self) -> Result<Counts, SaveError> {
         let cancelled: Vec<usize> = self.open.iter().map(|(_, job)| *job).collect();
         for job in cancelled {

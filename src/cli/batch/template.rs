@@ -69,10 +69,7 @@ pub(super) struct Fields<'a> {
 }
 
 impl Template {
-    /// Parses a template.
-    ///
-    /// # Errors
-    /// The reason, if a brace is unmatched or a field does not exist.
+    /// Parses a template. Fails with the reason if a brace is unmatched or a field does not exist.
     pub(super) fn parse(text: &str) -> Result<Self, String> {
         let mut pieces = Vec::new();
         let mut plain = String::new();

@@ -33,10 +33,8 @@ pub(super) fn own_view() -> Vec<CameraView> {
     vec![CameraView { name: "0".to_owned(), aim: Aim::Options, size: None }]
 }
 
-/// Parses the value of `--views`.
-///
-/// # Errors
-/// The reason, if it is invalid or its file cannot be used.
+/// Parses the value of `--views`. Fails with the reason if it is invalid or its file cannot be
+/// used.
 pub(crate) fn parse_views(text: &str) -> Result<Vec<CameraView>, String> {
     let text = text.trim();
     if let Ok(count) = text.parse::<usize>() {

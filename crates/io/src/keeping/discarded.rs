@@ -75,10 +75,7 @@ impl Discarded {
     }
 }
 
-/// Moves a file of work aside.
-///
-/// # Errors
-/// If it cannot be renamed; the file then keeps its name.
+/// Moves a file of work aside. Fails if it cannot be renamed; the file then keeps its name.
 pub(super) fn set_aside(work: &Path) -> std::io::Result<()> {
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs();
     let name = work.file_name().unwrap_or(work.as_os_str()).to_string_lossy();

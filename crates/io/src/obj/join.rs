@@ -57,11 +57,9 @@ pub(super) struct Content {
     pub(super) edge_color: Option<Color>,
 }
 
-/// Parses all statements of a text. `size` is its size in bytes, or an estimate.
-///
-/// # Errors
-/// If the text cannot be read, is not an OBJ file or is too long, if a line is invalid, or if the
-/// work is cancelled.
+/// Parses all statements of a text. `size` is its size in bytes, or an estimate. Fails if the text
+/// cannot be read, is not an OBJ file or is too long, if a line is invalid, or if the work is
+/// cancelled.
 pub(super) fn content(
     text: impl Read + Send,
     size: usize,

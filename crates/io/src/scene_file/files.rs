@@ -222,10 +222,7 @@ impl Files {
     }
 }
 
-/// Returns the path of a model and its load options.
-///
-/// # Errors
-/// If one of the options is invalid.
+/// Returns the path of a model and its load options. Fails if one of the options is invalid.
 fn read_options<'a>(
     model: &'a FileModel,
     name: &str,

@@ -20,10 +20,8 @@ use marraztu_core::scene::{
 };
 
 /// Converts a scene with its view and settings to the types of the file. `folder` is the file's
-/// folder, absolute.
-///
-/// # Errors
-/// The reason, if a model has no file, or a path or a number cannot be written.
+/// folder, absolute. Fails with the reason if a model has no file, or a path or a number cannot be
+/// written.
 pub(super) fn file_scene(
     scene: &Scene,
     view: &View,

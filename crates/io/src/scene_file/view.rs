@@ -136,10 +136,7 @@ fn is_zero(x: &f64) -> bool {
     *x == 0.0
 }
 
-/// Reads the view of a scene.
-///
-/// # Errors
-/// The reason, if one of its numbers is invalid.
+/// Reads the view of a scene. Fails with the reason if one of its numbers is invalid.
 pub(super) fn read_view(
     file: &FileView,
     scene: &Scene,
