@@ -271,9 +271,12 @@ struct Cells<'a> {
     current: bool,
 }
 
-/// The columns of figures: their names and values. Errors refer to the row's own reference, which
-/// the column `against` names.
-const FIGURES: [(&str, fn(&Cells<'_>) -> String); 23] = [
+/// The name of a column, and its value in a row.
+type Column = (&'static str, fn(&Cells<'_>) -> String);
+
+/// The columns of figures. Errors refer to the row's own reference, which the column `against`
+/// names.
+const FIGURES: [Column; 23] = [
     ("ms", |it| it.point.ms.to_string()),
     ("ratio", |it| it.point.ratio.quartiles.median.to_string()),
     ("ratio_lower", |it| it.point.ratio.quartiles.lower.to_string()),
