@@ -54,13 +54,11 @@ static WHEEL: Asset = Asset::new("wheel", include_bytes!("../../../assets/lesson
 const TILES: (&str, &[u8]) = ("own:tiles.png", include_bytes!("../../../assets/lessons/tiles.png"));
 
 /// Returns the pyramid that marks cameras.
-#[must_use]
 pub fn cam_model() -> Shared<Model> {
     CAM.model()
 }
 
 /// Finds a built-in model or a simple shape by name.
-#[must_use]
 pub fn own_model(name: &str) -> Option<Shared<Model>> {
     if let Some(shape) = Shape::named(name) {
         return Some(shape.model());
@@ -74,7 +72,6 @@ pub fn own_model(name: &str) -> Option<Shared<Model>> {
 }
 
 /// Finds a built-in texture by its path in a scene file.
-#[must_use]
 pub fn own_texture(path: &str) -> Option<Shared<Texture>> {
     static TEXTURE: OnceLock<Shared<Texture>> = OnceLock::new();
     let (own, content) = TILES;
@@ -90,7 +87,6 @@ pub fn own_texture(path: &str) -> Option<Shared<Texture>> {
 ///
 /// The order is as if three objects had been loaded one after the other, each to the front of the
 /// list. The last one is therefore first and selected.
-#[must_use]
 pub fn default_scene() -> (Scene, View) {
     let object = |asset: &Asset, material, place| {
         let mut object = Object::new(asset.model(), MaterialChoice::Preset(material));
@@ -109,7 +105,6 @@ pub fn default_scene() -> (Scene, View) {
 }
 
 /// Builds the first scene without its objects, on a background that contrasts with all models.
-#[must_use]
 pub fn empty_scene() -> (Scene, View) {
     let camera = Camera {
         name: "camera 1".to_owned(),

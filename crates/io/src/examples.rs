@@ -39,7 +39,6 @@ pub struct Example {
 
 impl Example {
     /// Decodes its thumbnail of 288 x 180 pixels.
-    #[must_use]
     pub fn thumbnail(&self) -> Option<Picture> {
         own_picture(self.thumbnail)
     }
@@ -129,7 +128,6 @@ const FILES: &[(&str, &[u8])] = files![
 ];
 
 /// Returns whether a path names an example or one of its files.
-#[must_use]
 pub fn is_example(path: &Path) -> bool {
     path.to_str().is_some_and(|path| path.starts_with(FOLDER))
 }

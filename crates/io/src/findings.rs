@@ -37,7 +37,6 @@ impl Finding {
 }
 
 /// Joins findings of one kind from several files, at the position of the first.
-#[must_use]
 pub fn joined(findings: Vec<Finding>) -> Vec<Finding> {
     let mut places = BTreeMap::new();
     let mut list: Vec<Finding> = Vec::new();

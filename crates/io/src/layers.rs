@@ -102,7 +102,6 @@ pub struct ExrCamera {
 
 /// Encodes a layer as an array of NumPy, with the shape (height, width) or (height, width,
 /// channels).
-#[must_use]
 pub fn layer_npy(size: Size, layer: &LayerPicture<'_>) -> Vec<u8> {
     let channels = match layer.channels.len() {
         1 => String::new(),

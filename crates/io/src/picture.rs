@@ -95,7 +95,6 @@ impl PictureFormat {
     }
 
     /// Lists the usual extensions of all formats: ".png, .jpg, .webp or .ppm".
-    #[must_use]
     pub fn usual_endings() -> String {
         either(PICTURE_FORMATS.iter().map(|format| format!(".{}", format.endings[0])))
     }

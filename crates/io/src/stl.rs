@@ -44,7 +44,6 @@ pub(super) fn has_stl_content(head: &[u8], size: usize) -> bool {
 }
 
 /// Returns whether the file at `path` is an STL file, judged by its name or by its content.
-#[must_use]
 pub fn is_stl(path: &Path) -> bool {
     // Reading from a pipe would consume bytes that the loader needs.
     let size = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file);

@@ -36,13 +36,11 @@ const FORMATS: &[(&str, ImageFormat)] = &[
 ];
 
 /// Lists the input formats of textures for a sentence.
-#[must_use]
 pub fn texture_formats() -> String {
     either(FORMATS.iter().map(|(name, _)| (*name).to_owned()))
 }
 
 /// Returns the file extensions of textures.
-#[must_use]
 pub fn texture_endings() -> Vec<&'static str> {
     FORMATS.iter().flat_map(|(_, format)| format.extensions_str()).copied().collect()
 }

@@ -45,7 +45,6 @@ pub struct Perceived {
 
 impl Perceived {
     /// Filters a picture.
-    #[must_use]
     pub fn new(picture: &Picture) -> Self {
         let size = picture.size();
         let opponent: Vec<[f64; 3]> = picture.pixels().par_iter().map(|p| opponent(*p)).collect();
@@ -62,7 +61,6 @@ impl Perceived {
     }
 
     /// Returns the mean difference to another picture of the same size, from 0 to 1.
-    #[must_use]
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^52 pixels")]
     pub fn difference(&self, other: &Self) -> f64 {
         assert_eq!(self.size, other.size, "pictures of one size are compared");

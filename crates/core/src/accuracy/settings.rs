@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 /// How exactly a picture is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[must_use]
 pub struct Settings {
     /// The precision of lighting.
     pub arithmetic: Arithmetic,
@@ -136,7 +137,6 @@ impl Samples {
         [Self::One, Self::Four, Self::Sixteen, Self::SixtyFour, Self::TwoFiftySix];
 
     /// The number of samples.
-    #[must_use]
     pub const fn count(self) -> u32 {
         self as u32
     }
@@ -169,7 +169,6 @@ pub enum Filter {
 
 impl Filter {
     /// Returns whether the filter reads smaller copies of the texture.
-    #[must_use]
     pub const fn reads_mips(self) -> bool {
         match self {
             Self::Nearest | Self::Bilinear => false,
@@ -370,7 +369,6 @@ pub struct ShadowMapForm {
 
 impl ShadowMethod {
     /// The form of its shadow maps, if it uses any.
-    #[must_use]
     pub const fn map(self) -> Option<ShadowMapForm> {
         let (side, is_filtered) = match self {
             Self::Map512 => (512, false),

@@ -26,7 +26,6 @@ pub fn can_aim(scene: &Scene, view: &View) -> Result<LightId, Refusal> {
 ///
 /// A sun is infinitely far away, so its position is next to the scene, on the side from which it
 /// shines. Ambient light has no position, so the result is `None`.
-#[must_use]
 pub fn stands(scene: &Scene, view: &View, id: LightId) -> Option<Aim> {
     let LightOrigin { position, direction } =
         scene.light_origin(view, &scene.lights.get(id)?.kind)?;

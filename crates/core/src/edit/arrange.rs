@@ -7,14 +7,12 @@ use crate::base::math::Axis;
 use crate::scene::{Bounds, Command, ItemId, Object, ObjectId, Scene, View};
 
 /// Returns the bounding box of an object in the world.
-#[must_use]
 pub fn world_box(object: &Object, time: f64) -> Option<Bounds> {
     Bounds::of(object.placed_vertices(time))
 }
 
 /// Returns the height of the ground: of the highest visible and level ground or plane shape, else
 /// 0. Excludes `id`.
-#[must_use]
 pub fn ground(scene: &Scene, id: ObjectId) -> f64 {
     let planes = scene.objects.iter().filter(|(other, object)| {
         let up = object.placement.now().y_axis.truncate();

@@ -28,7 +28,6 @@ pub struct Copies {
 
 impl Copies {
     /// Returns whether all three lists are empty.
-    #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.objects.is_empty() && self.cameras.is_empty() && self.lights.is_empty()
     }

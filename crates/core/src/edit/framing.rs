@@ -46,7 +46,6 @@ pub enum Side {
 
 impl Side {
     /// Returns the axes of a camera that looks from this side.
-    #[must_use]
     pub const fn axes(self) -> DMat3 {
         match self {
             Self::Front => DMat3::IDENTITY,
@@ -129,7 +128,6 @@ pub fn from_pose(scene: &Scene, view: &View, pose: Pose, half_angle: Option<f64>
 }
 
 /// Returns the distance at which [`models`] shows a sphere of radius `r`.
-#[must_use]
 pub fn models_distance(first: &Lens, r: f64) -> f64 {
     lens(first, r * (1.0 + MARGIN)).0
 }
@@ -145,7 +143,6 @@ pub fn side(scene: &Scene, view: &View, side: Side) -> Change {
 
 /// Returns the bounding sphere of objects. For several objects, it encloses their spheres and is
 /// centred in the box around these. `None` if no object has vertices.
-#[must_use]
 pub fn sphere(scene: &Scene, view: &View, ids: &[ObjectId]) -> Option<Sphere> {
     let spheres: Vec<(DVec3, f64)> = ids
         .iter()
@@ -163,7 +160,6 @@ pub fn sphere(scene: &Scene, view: &View, ids: &[ObjectId]) -> Option<Sphere> {
 }
 
 /// Returns the distance from the centre of a sphere of radius `r`, and the lens for viewing it.
-#[must_use]
 pub fn lens(lens: &Lens, r: f64) -> (f64, Lens) {
     let distance = r / libm::sin(lens.half_angle.to_radians());
     let near = 1.0_f64.min((distance - r) / 2.0).min(distance / 1000.0);

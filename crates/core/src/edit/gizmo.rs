@@ -33,19 +33,16 @@ pub enum Amount {
 
 impl Pivot {
     /// Returns the direction of an axis in the world; `None` if the axis has length 0.
-    #[must_use]
     pub fn direction(&self, axis: Axis) -> Option<DVec3> {
         math::unit(self.axes.col(axis.index()))
     }
 
     /// Returns the length of a unit along an axis, in world units.
-    #[must_use]
     pub fn unit(&self, axis: Axis) -> f64 {
         self.axes.col(axis.index()).length()
     }
 
     /// Transforms a world vector into the frame; `None` if the frame is flat.
-    #[must_use]
     pub fn in_frame(&self, v: DVec3) -> Option<DVec3> {
         let inside = self.axes.inverse() * v;
         (math::has_full_rank(self.axes) && inside.is_finite()).then_some(inside)
@@ -53,7 +50,6 @@ impl Pivot {
 
     /// Returns the handedness: -1 if the frame is mirrored and turns therefore run the other way in
     /// the world, else 1.
-    #[must_use]
     pub fn hand(&self) -> f64 {
         if self.axes.determinant() < 0.0 { -1.0 } else { 1.0 }
     }
@@ -122,7 +118,6 @@ pub fn transform(scene: &Scene, view: &View, amount: Amount, phase: GesturePhase
 }
 
 /// Rounds an amount to whole steps of the keys x, y and z.
-#[must_use]
 pub fn snapped(scene: &Scene, view: &View, amount: Amount) -> Amount {
     match amount {
         Amount::Move(delta) => {

@@ -238,7 +238,6 @@ pub fn set_lens(scene: &Scene, id: CameraId, lens: Lens) -> Change {
 }
 
 /// Returns the reason why a crease angle has no effect on a model; `None` if it has.
-#[must_use]
 pub fn why_no_crease(model: &Model, file_normals: bool) -> Option<&'static str> {
     if Shape::named(&model.name).is_some_and(|shape| shape.model().shares_file_with(model)) {
         Some("the shape has exact normals")

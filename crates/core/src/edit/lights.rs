@@ -36,25 +36,21 @@ impl Channel {
 }
 
 /// Returns the kind of a sun that shines straight down.
-#[must_use]
 pub const fn sun() -> LightKind {
     LightKind::Sun { direction: Tracked::new(DVec3::NEG_Y) }
 }
 
 /// Returns the kind of a bulb at the origin.
-#[must_use]
 pub fn bulb() -> LightKind {
     LightKind::Bulb { position: Tracked::new(DVec3::ZERO), orbit: Orbit::default() }
 }
 
 /// Returns the kind of a spot with default aperture and concentration.
-#[must_use]
 pub const fn spot(owner: SpotOwner) -> LightKind {
     LightKind::Spot { owner, half_aperture: 22.5, exponent: 5.0 }
 }
 
 /// Returns the owner of a free spot at the origin that shines along -Z.
-#[must_use]
 pub const fn fixed() -> SpotOwner {
     SpotOwner::Fixed(Tracked::new(Aim { position: DVec3::ZERO, direction: DVec3::NEG_Z }))
 }
@@ -91,13 +87,11 @@ pub fn solo(scene: &Scene, view: &View, before: &BTreeSet<LightId>) -> Change {
 }
 
 /// Returns whether a light is on and all others are off.
-#[must_use]
 pub fn is_solo(scene: &Scene, id: LightId) -> bool {
     scene.lights.len() > 1 && scene.lights.iter().all(|(other, light)| light.on == (other == id))
 }
 
 /// Returns the lights that are on.
-#[must_use]
 pub fn lit(scene: &Scene) -> BTreeSet<LightId> {
     scene.lights.iter().filter(|(_, light)| light.on).map(|(id, _)| id).collect()
 }
@@ -224,7 +218,6 @@ pub fn toggle_all_shadows(scene: &Scene) -> Change {
 }
 
 /// Returns whether any light of a scene casts shadows.
-#[must_use]
 pub fn casts_shadows(scene: &Scene) -> bool {
     scene.lights.iter().any(|(_, light)| light.can_cast_shadows() && light.shadows)
 }

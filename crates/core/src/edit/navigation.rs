@@ -132,7 +132,6 @@ pub fn zoom(
 }
 
 /// Returns the world units per pixel at `depth` in front of the camera.
-#[must_use]
 pub fn units_per_pixel(scene: &Scene, view: &View, size: Size, depth: f64) -> f64 {
     let lens = scene.selected_camera(view).lens;
     match view.projection {

@@ -17,14 +17,12 @@ use crate::base::math::{self, Axis};
 use crate::scene::{Aim, CameraId, CameraMode, LightId, ObjectId, Pose, Scene, View};
 
 /// Returns the position of an object's origin.
-#[must_use]
 pub fn translation(placement: &DMat4) -> DVec3 {
     placement.w_axis.truncate()
 }
 
 /// Returns an object's rotation as degrees about X, Y and Z, `R = Rx Ry Rz`. Of the equivalent
 /// angles, these have the smallest X and Z.
-#[must_use]
 pub fn turn_degrees(placement: &DMat4) -> DVec3 {
     let turn = turn(placement);
     let [x, y, z] = [turn.x_axis, turn.y_axis, turn.z_axis];
@@ -42,7 +40,6 @@ pub fn turn_degrees(placement: &DMat4) -> DVec3 {
 }
 
 /// Returns the scale of an object along its axes; X is negative if the object is mirrored.
-#[must_use]
 pub fn scale(placement: &DMat4) -> DVec3 {
     let m = DMat3::from_mat4(*placement);
     let x = m.x_axis.length() * if m.determinant() < 0.0 { -1.0 } else { 1.0 };
@@ -50,7 +47,6 @@ pub fn scale(placement: &DMat4) -> DVec3 {
 }
 
 /// Returns a camera's yaw, pitch and roll in degrees, `R = Ry Rx Rz`.
-#[must_use]
 pub fn camera_degrees(pose: &Pose) -> DVec3 {
     let [x, y, z] = [pose.axes.x_axis, pose.axes.y_axis, pose.axes.z_axis];
     // R = |  ...     ...   sy cp |
@@ -140,7 +136,6 @@ pub fn object(scene: &Scene, view: &View, id: ObjectId, to: DMat4, phase: Gestur
 
 /// Copies the numbers that changed from `old` to `new` into the placement `own`: of the position,
 /// and of the scale or else the rotation. `None` if the object would become flat.
-#[must_use]
 pub(super) fn alike(old: &DMat4, new: &DMat4, own: &DMat4) -> Option<DMat4> {
     // Numbers that did not change, up to rounding, keep the object's value.
     let chosen = |old: DVec3, new: DVec3, own: DVec3| {

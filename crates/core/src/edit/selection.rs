@@ -120,7 +120,6 @@ pub fn next(scene: &Scene, view: &View, phase: GesturePhase) -> Result<Selection
 }
 
 /// Returns the item that the subject's keys act on.
-#[must_use]
 pub fn selected(view: &View) -> Option<ItemId> {
     match view.subject {
         Subject::Camera => Some(ItemId::Camera(view.camera)),
@@ -130,7 +129,6 @@ pub fn selected(view: &View) -> Option<ItemId> {
 }
 
 /// Returns the subject for items of this kind.
-#[must_use]
 pub const fn subject_of(id: ItemId) -> Subject {
     match id {
         ItemId::Object(_) => Subject::Object,

@@ -23,7 +23,6 @@ pub struct Others {
 
 impl Others {
     /// Selects these items in addition to `with`.
-    #[must_use]
     pub fn new(with: ItemId, items: impl IntoIterator<Item = ItemId>) -> Self {
         let items = items.into_iter().filter(|item| *item != with).collect();
         Self { with: Some(with), items }
@@ -317,7 +316,6 @@ fn owner_alike(before: &SpotOwner, after: &SpotOwner, own: &mut SpotOwner) {
 
 /// Returns all listed items of the subject's list. If all of these are already selected, the listed
 /// items of all lists.
-#[must_use]
 pub fn all(
     scene: &Scene,
     view: &View,

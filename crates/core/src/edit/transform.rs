@@ -29,7 +29,6 @@ pub enum Sign {
 
 impl Sign {
     /// Applies this sign to an amount.
-    #[must_use]
     pub const fn of(self, amount: f64) -> f64 {
         match self {
             Self::Positive => amount,
@@ -79,7 +78,6 @@ pub fn step(scene: &Scene, view: &View, axis: Axis, sign: Sign, phase: GesturePh
 
 /// Returns the distance of one step along `axis` for the selected item of the subject, in the units
 /// of the item's frame.
-#[must_use]
 pub fn distance(scene: &Scene, view: &View, axis: Axis) -> f64 {
     let length = steps::length(scene, view);
     match view.object.and_then(|id| scene.objects.get(id)) {

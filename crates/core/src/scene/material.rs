@@ -63,7 +63,6 @@ impl PresetId {
     }
 
     /// Returns the row with this name. Case, blanks, `-` and `_` are ignored.
-    #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         let plain = |text: &str| -> String {
             let letters = text.chars().filter(|c| !matches!(c, ' ' | '-' | '_'));
@@ -73,7 +72,6 @@ impl PresetId {
     }
 
     /// Returns the row.
-    #[must_use]
     pub const fn get(self) -> &'static Preset {
         &PRESETS[self.0]
     }

@@ -40,7 +40,6 @@ impl Shape {
 
     /// Returns whether the shape is a ground for other objects. A ground touches the lowest object,
     /// and is at least as large as the scene.
-    #[must_use]
     pub const fn is_ground(self) -> bool {
         match self {
             Self::Ground | Self::Plane => true,
@@ -49,7 +48,6 @@ impl Shape {
     }
 
     /// Returns the name, which scene files use, too.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Ground => "ground",
@@ -62,13 +60,11 @@ impl Shape {
     }
 
     /// Returns the shape with this name.
-    #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|shape| shape.name() == name)
     }
 
     /// Returns the model, shared by all objects of this shape.
-    #[must_use]
     pub fn model(self) -> Shared<Model> {
         static MODELS: [OnceLock<Shared<Model>>; 6] = [const { OnceLock::new() }; 6];
         let make = || {

@@ -36,14 +36,12 @@ fn placeholder() -> &'static Shared<Picture> {
 impl Texture {
     /// Builds a texture that replaces a missing or unreadable file. It keeps the file's path, so
     /// saving the scene does not lose it.
-    #[must_use]
     pub fn placeholder(source: PathBuf) -> Self {
         let (wrap, offset, scale) = (Wrap::default(), [0.0; 2], [1.0; 2]);
         Self { source, picture: placeholder().clone(), wrap, offset, scale }
     }
 
     /// Returns whether the texture replaces a missing file.
-    #[must_use]
     pub fn is_placeholder(&self) -> bool {
         Shared::same(&self.picture, placeholder())
     }

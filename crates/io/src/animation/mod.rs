@@ -187,7 +187,6 @@ impl AnimationWriter {
     }
 
     /// Returns the differences between the file and the request, one sentence each.
-    #[must_use]
     pub fn notes(&self) -> &[String] {
         &self.notes
     }

@@ -32,7 +32,6 @@ pub struct Discarded {
 
 impl Discarded {
     /// Finds all discarded work, the latest first. Work older than 30 days is deleted.
-    #[must_use]
     pub fn all(folders: &OwnFolders) -> Vec<Self> {
         Self::all_at(folders, SystemTime::now())
     }
@@ -69,7 +68,6 @@ impl Discarded {
     }
 
     /// Returns the scene file with the work.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }

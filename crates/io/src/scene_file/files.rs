@@ -41,7 +41,6 @@ pub struct Known {
 
 impl Known {
     /// Collects the models and textures of a scene.
-    #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let objects = || scene.objects.iter().map(|(_, object)| object);
         let cameras = scene.cameras.iter().map(|(_, camera)| camera.model.clone());

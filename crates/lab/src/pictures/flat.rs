@@ -33,21 +33,18 @@ pub struct Flat {
 
 impl Flat {
     /// Builds a triangle at half of [`FAR`].
-    #[must_use]
     pub const fn new(corners: [Snapped; 3]) -> Self {
         Self { corners, distances: [FAR / 2.0; 3] }
     }
 }
 
 /// Encodes the number of a triangle as its colour.
-#[must_use]
 pub fn color_of(number: usize) -> [u8; 4] {
     let [r, g, b, ..] = (number + 1).to_le_bytes();
     [r, g, b, 255]
 }
 
 /// Decodes the number of a triangle from its colour; `None` for the background.
-#[must_use]
 pub fn number_of([r, g, b, _]: [u8; 4]) -> Option<usize> {
     (usize::from(r) | usize::from(g) << 8 | usize::from(b) << 16).checked_sub(1)
 }
@@ -57,7 +54,6 @@ pub fn number_of([r, g, b, _]: [u8; 4]) -> Option<usize> {
 ///
 /// # Panics
 /// If a coordinate has more than 24 bits, which a mesh cannot hold.
-#[must_use]
 #[expect(clippy::cast_precision_loss, reason = "a side is at most 2^14")]
 pub fn scene(objects: &[Vec<Flat>], side: usize) -> (Scene, View) {
     assert!(side.is_power_of_two(), "only then is every corner exact");
@@ -95,20 +91,17 @@ pub fn scene(objects: &[Vec<Flat>], side: usize) -> (Scene, View) {
 }
 
 /// Draws a scene made by [`scene`].
-#[must_use]
 pub fn draw((scene, view): &(Scene, View), side: usize, renderer: &mut Renderer) -> Picture {
     let plan = plan_frame(&Shot::new(scene, view, &Settings::default(), Size::new(side, side)));
     renderer.render(&plan).clone()
 }
 
 /// Draws triangles as one object.
-#[must_use]
 pub fn draw_triangles(triangles: &[Flat], side: usize, renderer: &mut Renderer) -> Picture {
     draw(&scene(&[triangles.to_vec()], side), side, renderer)
 }
 
 /// Converts a corner in subpixels to its position in world space.
-#[must_use]
 #[expect(clippy::cast_precision_loss, reason = "a side is at most 2^14")]
 pub fn place(corner: Snapped, distance: f64, side: usize) -> DVec3 {
     let (half, parts) = (side as f64 / 2.0, f64::from(SUBPIXELS));
@@ -142,7 +135,6 @@ fn model(triangles: &[Flat], side: usize, first: usize) -> Shared<Model> {
 }
 
 /// Returns the matrix that moves a scene by a number of pixels to the right and down.
-#[must_use]
 pub fn moved(right: f64, down: f64) -> DMat4 {
     DMat4::from_translation(DVec3::new(right, -down, 0.0))
 }

@@ -44,7 +44,6 @@ impl TestPicture {
     ///
     /// # Panics
     /// If the system cannot start that many threads.
-    #[must_use]
     pub fn draw(&self, level: Level, threads: usize) -> Picture {
         let draw = || Renderer::new(level).render(&self.plan).clone();
         if cfg!(target_family = "wasm") {
@@ -56,14 +55,12 @@ impl TestPicture {
     }
 
     /// Returns the name of the picture as the name of a file without its ending.
-    #[must_use]
     pub fn file_stem(&self) -> String {
         self.name.replace(|letter: char| !letter.is_ascii_alphanumeric(), "-")
     }
 }
 
 /// Hashes the width, the height and the bytes of a picture with FNV-1a.
-#[must_use]
 pub fn sum(picture: &Picture) -> u64 {
     let Size { width, height } = picture.size();
     let sides = [width, height].map(|side| (side as u64).to_le_bytes());
@@ -75,7 +72,6 @@ pub fn sum(picture: &Picture) -> u64 {
 ///
 /// # Panics
 /// If a line of the list is neither a comment nor a hash with a name.
-#[must_use]
 pub fn listed() -> Vec<(&'static str, u64)> {
     let line = |line: &'static str| {
         let (sum, name) = line.split_once("  ")?;
@@ -89,7 +85,6 @@ pub fn listed() -> Vec<(&'static str, u64)> {
 }
 
 /// Returns the pictures, in the order of the list.
-#[must_use]
 pub fn all() -> Vec<TestPicture> {
     let (scene, view) = io::default_scene();
     let near = nearer(&scene);

@@ -360,7 +360,6 @@ fn digits(number: f64) -> String {
 }
 
 /// Returns a text that begins with a capital letter.
-#[must_use]
 pub fn capitalized(text: &str) -> String {
     let mut letters = text.chars();
     let first = letters.next().map(|first| first.to_uppercase().to_string());

@@ -59,7 +59,6 @@ impl Body {
 
 impl Mesh {
     /// Counts the closed bodies, and the bodies that are inside out.
-    #[must_use]
     pub fn closed_bodies(&self) -> ClosedBodies {
         let keys: Vec<u64> = self.shape.positions.par_iter().map(|place| key(*place)).collect();
         let outlines = self.outlines();
@@ -112,7 +111,6 @@ impl Mesh {
     }
 
     /// Finds the polygons with all of their file normals on the wrong side, in ascending order.
-    #[must_use]
     pub fn polygons_against_normals(&self) -> Vec<u32> {
         if !self.has_file_normals() {
             return Vec::new();

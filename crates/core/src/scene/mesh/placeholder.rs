@@ -14,7 +14,6 @@ const FACES: [[u32; 4]; 6] =
 
 impl Mesh {
     /// Builds a cube of this side around the origin, as a replacement for a missing file.
-    #[must_use]
     pub fn placeholder(side: f64) -> Self {
         let half = side.clamp(*SIDES.start(), *SIDES.end()) / 2.0;
         let along = |corner: u32, bit: u32| if corner >> bit & 1 == 1 { half } else { -half };
@@ -37,7 +36,6 @@ impl Mesh {
     }
 
     /// Returns whether the mesh is a box that replaces a missing file.
-    #[must_use]
     pub const fn is_placeholder(&self) -> bool {
         self.is_placeholder
     }

@@ -80,7 +80,6 @@ impl Geometry<LibmOps> for WithUvs<'_> {
 
 impl Mesh {
     /// Returns the tangents of each triangle's corners, for one kind of normals.
-    #[must_use]
     pub fn tangents(&self, source: NormalSource) -> &[CornerTangents] {
         let cell = match source {
             NormalSource::Computed => &self.found.tangents[0],
