@@ -177,10 +177,8 @@ pub(crate) enum Encoding {
 pub(super) const NUMBER_ENDINGS: [&str; 2] = ["exr", "npy"];
 
 impl Encoding {
-    /// Returns the encoding of the path's extension.
-    ///
-    /// # Errors
-    /// All extensions, if the name has another one.
+    /// Returns the encoding of the path's extension. Fails with all extensions if the name has
+    /// another one.
     pub(crate) fn of(path: &Path) -> Result<Self, String> {
         let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
         match ending.as_deref().and_then(|ending| ending.to_str()) {
