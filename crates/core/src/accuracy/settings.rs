@@ -8,49 +8,30 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
 #[must_use]
+#[expect(missing_docs, reason = "the type of each field says it")]
 pub struct Settings {
-    /// The precision of lighting.
     pub arithmetic: Arithmetic,
-    /// Where light is evaluated.
     #[serde(rename = "shading", alias = "light")]
     pub light: LightAt,
-    /// Samples per pixel.
     pub samples: Samples,
-    /// The part of the pixels that is drawn.
     pub resolution: Resolution,
-    /// How a texture is filtered between its texels.
     pub filter: Filter,
-    /// The form of the highlight.
     pub specular: SpecularForm,
-    /// How the power of a highlight is computed.
     pub power: SpecularPower,
-    /// How colours become bytes.
     pub rounding: Rounding,
-    /// How normals are transformed.
     pub stretched: NormalMatrix,
-    /// The precision of vertex transforms.
     pub vertices: VertexArithmetic,
-    /// The fraction of a pixel that vertices are snapped to.
     pub subpixels: Subpixels,
-    /// Which pixels a triangle covers.
     pub coverage: Coverage,
-    /// How depths are stored.
     pub depth: DepthFormat,
-    /// How vertex attributes are interpolated across a triangle.
     pub interpolation: Interpolation,
-    /// How transparent surfaces are blended.
     pub transparency: Transparency,
-    /// How tangents for bumps are computed.
     pub tangents: Tangents,
-    /// How height and normal maps are filtered.
     #[serde(rename = "bumps")]
     pub bump_filter: BumpFilter,
-    /// How shadows are computed.
     #[serde(rename = "shadow-method")]
     pub shadow_method: ShadowMethod,
-    /// Where shadow rays start on smooth surfaces.
     pub terminator: Terminator,
-    /// The colour space in which light is computed.
     #[serde(rename = "values")]
     pub light_values: LightValues,
     /// An axis of older scene files.
