@@ -3,11 +3,21 @@
 //! A file may load with thousands of equal faults, so each kind has a sentence for one case and one
 //! for many.
 
-/// Declares the kinds, each with its sentences for one case and, if it is another, for many.
+/// A property of some kinds.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Mark {
+    /// Cases with different names are joined into one finding.
+    Joined,
+    /// The model loses something that its file defines.
+    Loss,
+}
+
+/// Declares the kinds, each with its marks, and its sentences for one case and, if it is another,
+/// for many.
 ///
 /// `#` is the number of cases, `@` the name in the first case.
 macro_rules! kinds {
-    ($($name:ident: $one:literal $(, $many:literal)?;)+) => {
+    ($($name:ident $([$($mark:ident),+])?: $one:literal $(, $many:literal)?;)+) => {
         /// The subject of a [`Finding`](super::Finding).
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub enum FindingKind {
@@ -20,21 +30,27 @@ macro_rules! kinds {
                     $(Self::$name => &[$one $(, $many)?],)+
                 }
             }
+
+            fn marks(self) -> &'static [Mark] {
+                match self {
+                    $(Self::$name => &[$($(Mark::$mark),+)?],)+
+                }
+            }
         }
     };
 }
 
 kinds! {
-    VertexNotFinite:
+    VertexNotFinite [Loss]:
         "a vertex is infinite or NaN and is skipped",
         "# vertices are infinite or NaN and are skipped";
-    VertexUnreadable:
+    VertexUnreadable [Joined, Loss]:
         "a vertex cannot be read (@) and is skipped",
         "# vertices cannot be read (the first: @) and are skipped";
     VertexUnused:
         "a vertex is not used by any face and does not affect size and centre",
         "# vertices are not used by any face and do not affect size and centre";
-    NumberOdd:
+    NumberOdd [Joined]:
         "the number \"@\" is written in an unusual way and is read nevertheless",
         "# statements have numbers that are written in an unusual way (the first: \"@\") and are \
          read nevertheless";
@@ -47,16 +63,16 @@ kinds! {
     FaceOnLostVertex:
         "a face refers to a skipped vertex and is skipped too",
         "# faces refer to skipped vertices and are skipped too";
-    FaceRange:
+    FaceRange [Loss]:
         "a face refers to a vertex that the file does not have and is skipped",
         "# faces refer to vertices that the file does not have and are skipped";
     FaceShort:
         "a face has fewer than three corners and is skipped",
         "# faces have fewer than three corners and are skipped";
-    FaceUnreadable:
+    FaceUnreadable [Joined, Loss]:
         "a face has a corner that is not a number (\"@\") and is skipped",
         "# faces have corners that are not numbers (such as \"@\") and are skipped";
-    SmoothingUnreadable:
+    SmoothingUnreadable [Joined]:
         "a smoothing group is neither a number nor \"off\" (\"@\") and is taken as off",
         "# smoothing groups are neither numbers nor \"off\" (such as \"@\") and are taken as off";
     LineOrPoint:
@@ -81,7 +97,7 @@ kinds! {
     NormalNotFinite:
         "a normal is infinite or NaN and is ignored",
         "# normals are infinite or NaN and are ignored";
-    UvUnreadable:
+    UvUnreadable [Loss]:
         "a texture coordinate cannot be read and is ignored",
         "# texture coordinates cannot be read and are ignored";
     NormalUnreadable:
@@ -109,98 +125,99 @@ kinds! {
         "# comments #MRGB (vertex colours of ZBrush) are ignored";
     FaceRepeats: "a face refers to a vertex twice", "# faces refer to a vertex twice";
     FaceNoArea: "a face has no area and no normal", "# faces have no area and no normals";
-    PolygonCrosses:
+    PolygonCrosses [Joined]:
         "a polygon of @ corners crosses itself; its triangles may lie outside it",
         "# polygons (the first of @ corners) cross themselves; their triangles may lie outside \
             them";
-    InsideOut:
+    InsideOut [Loss]:
         "the closed body is inside out; --flip-winding turns it",
         "all # closed bodies are inside out; --flip-winding turns them";
     InsideOutPartly:
         "a closed body is inside out, while others are not",
         "# closed bodies are inside out, while others are not";
-    NormalsAgainst:
+    NormalsAgainst [Loss]:
         "the normals of a face point against its winding; --no-file-normals ignores them",
         "the normals of # faces point against their winding; --no-file-normals ignores them";
-    NoFaces: "the file has vertices but no faces: it draws nothing";
-    MtlMissing: "the material file \"@\" was not found";
+    NoFaces [Loss]: "the file has vertices but no faces: it draws nothing";
+    MtlMissing [Loss]: "the material file \"@\" was not found";
     MtlRenamed: "the material file \"@\" was not found; the one with the model's name is used";
     MtlOfModel: "the file names materials but no material file; \"@\" is used";
     MtlUnnamed: "the file names no materials; the material file \"@\" is not used";
     PictureUnnamed: "the file names no material file; the picture \"@\" is not used";
-    MaterialsUnused:
+    MaterialsUnused [Loss]:
         "no face names a material: the one in the material file is not used",
         "no face names a material: the # in the material files are not used";
     MtlMany:
         "a statement \"mtllib\" is ignored: at most 1000 different ones are read",
         "# statements \"mtllib\" are ignored: at most 1000 different ones are read";
-    MtlUnreadable: "the material file cannot be read: @";
+    MtlUnreadable [Loss]: "the material file cannot be read: @";
     MaterialUnknown: "the material \"@\" is not defined: silver is used";
     MaterialTwice:
         "the material \"@\" is defined twice: the first is used",
         "the material \"@\" is defined # times more: the first is used";
-    MtlStray:
+    MtlStray [Joined]:
         "a statement \"@\" comes before any newmtl and is ignored",
         "# statements (the first: \"@\") come before any newmtl and are ignored";
-    MtlNumber:
+    MtlNumber [Joined]:
         "a statement \"@\" has a number that cannot be read and is ignored",
         "# statements (the first: \"@\") have numbers that cannot be read and are ignored";
-    MendedAmbient:
+    MendedAmbient [Joined]:
         "material \"@\": Ka is missing, white, above 1 or equal to Kd, and is taken as 0.2 Kd",
         "# materials: Ka is missing, white, above 1 or equal to Kd, and is taken as 0.2 Kd";
-    MendedDiffuse:
+    MendedDiffuse [Joined]:
         "material \"@\": Kd is missing and is taken as 0.8, or 1 with a texture",
         "# materials: Kd is missing and is taken as 0.8, or 1 with a texture";
-    MendedSpecular:
+    MendedSpecular [Joined]:
         "material \"@\": Ks is missing or switched off by illum, and is taken as 0",
         "# materials: Ks is missing or switched off by illum, and is taken as 0";
-    MendedExponent:
+    MendedExponent [Joined]:
         "material \"@\": Ns is below 1 and is taken as 1",
         "# materials: Ns is below 1 and is taken as 1";
-    MendedMatt:
+    MendedMatt [Joined]:
         "material \"@\": Ns is missing or 0: the surface is matt, without the highlight of Ks",
         "# materials: Ns is missing or 0: the surfaces are matt, without the highlights of Ks";
     MendedBytes: "the colours of materials are whole numbers above 16 and are read as 0 to 255";
-    DiffuseBlack:
+    DiffuseBlack [Joined, Loss]:
         "material \"@\": Kd 0 makes its texture black",
         "# materials: Kd 0 makes their textures black";
     BumpIsNormals:
         "the bump map \"@\" shows normals and is read as a normal map; --bump-maps heights reads \
          it as heights";
-    MendedEmission:
+    MendedEmission [Joined]:
         "material \"@\": map_Ke without Ke; Ke is taken as 1",
         "# materials: map_Ke without Ke; Ke is taken as 1";
-    MendedMapped:
+    MendedMapped [Joined]:
         "material \"@\": map_Ks without Ks; Ks is taken as 1",
         "# materials: map_Ks without Ks; Ks is taken as 1";
-    MendedPacked:
+    MendedPacked [Joined]:
         "material \"@\": with bsdf pbr, Ks is taken as occlusion, roughness and metalness",
         "# materials: with bsdf pbr, Ks is taken as occlusion, roughness and metalness";
-    Illumination:
+    Illumination [Joined]:
         "material \"@\": illum is not 0, 1 or 2: it is drawn as 2, without mirrors and refraction",
         "# materials: illum is not 0, 1 or 2: it is drawn as 2, without mirrors and refraction";
-    MendedRange:
+    MendedRange [Joined]:
         "material \"@\": a value is outside 0 to 1 and is clamped",
         "# values of materials are outside 0 to 1 and are clamped";
-    MendedTransparency:
+    MendedTransparency [Joined]:
         "material \"@\": Tr 1, which would hide the whole model, is taken as opaque",
         "# materials: Tr 1, which would hide the whole model, is taken as opaque";
-    Transparent:
+    Transparent [Joined, Loss]:
         "material \"@\" is wholly transparent and draws nothing",
         "# materials are wholly transparent and draw nothing";
     MapUnused:
         "a statement \"@\" is ignored: maps of this kind are not drawn",
         "# statements \"@\" are ignored: maps of this kind are not drawn";
     MapOption: "the option \"@\" of a map is ignored", "the option \"@\" of # maps is ignored";
-    TextureMissing: "the texture \"@\" was not found";
-    TextureUnmapped: "the texture @ is not shown: its faces have no texture coordinates";
+    TextureMissing [Loss]: "the texture \"@\" was not found";
+    TextureUnmapped [Loss]: "the texture @ is not shown: its faces have no texture coordinates";
     TextureMany:
         "a texture is ignored: at most 10,000 different ones are read",
         "# textures are ignored: at most 10,000 different ones are read";
-    TextureUnreadable: "the texture cannot be read: @";
-    TextureCutOff: "the texture is cut off: @ ends early, and the rest of the picture is grey";
-    ModelMissing: "the model \"@\" was not found: a box is shown instead";
-    ModelUnreadable: "a model cannot be read and is shown as a box: @";
+    TextureUnreadable [Loss]: "the texture cannot be read: @";
+    TextureCutOff [Loss]:
+        "the texture is cut off: @ ends early, and the rest of the picture is grey";
+    ModelMissing [Loss]: "the model \"@\" was not found: a box is shown instead";
+    ModelUnreadable [Loss]: "a model cannot be read and is shown as a box: @";
     SelectionMissing: "the view selects @, which is not in the scene: the first one is selected";
     OwnerMissing: "@, which is not in the scene";
 }
@@ -210,56 +227,13 @@ const LONGEST_NAME: usize = 200;
 
 impl FindingKind {
     /// Returns whether cases with different names are joined into one finding.
-    pub(super) const fn joins_names(self) -> bool {
-        matches!(
-            self,
-            Self::FaceUnreadable
-                | Self::VertexUnreadable
-                | Self::NumberOdd
-                | Self::SmoothingUnreadable
-                | Self::PolygonCrosses
-                | Self::MtlStray
-                | Self::MtlNumber
-                | Self::MendedAmbient
-                | Self::MendedDiffuse
-                | Self::MendedSpecular
-                | Self::MendedExponent
-                | Self::MendedMatt
-                | Self::DiffuseBlack
-                | Self::MendedRange
-                | Self::MendedEmission
-                | Self::MendedMapped
-                | Self::MendedPacked
-                | Self::Illumination
-                | Self::MendedTransparency
-                | Self::Transparent
-        )
+    pub(super) fn joins_names(self) -> bool {
+        self.marks().contains(&Mark::Joined)
     }
 
     /// Returns whether the model loses something that its file defines.
-    pub const fn is_loss(self) -> bool {
-        matches!(
-            self,
-            Self::VertexNotFinite
-                | Self::VertexUnreadable
-                | Self::UvUnreadable
-                | Self::FaceRange
-                | Self::FaceUnreadable
-                | Self::NoFaces
-                | Self::InsideOut
-                | Self::NormalsAgainst
-                | Self::MaterialsUnused
-                | Self::DiffuseBlack
-                | Self::MtlMissing
-                | Self::MtlUnreadable
-                | Self::Transparent
-                | Self::TextureMissing
-                | Self::TextureUnreadable
-                | Self::TextureCutOff
-                | Self::TextureUnmapped
-                | Self::ModelMissing
-                | Self::ModelUnreadable
-        )
+    pub fn is_loss(self) -> bool {
+        self.marks().contains(&Mark::Loss)
     }
 
     pub(super) fn text(self, count: usize, name: &str, line: Option<u32>, files: usize) -> String {
