@@ -23,8 +23,10 @@ pub struct SheetCell {
 }
 
 /// Arranges pictures in rows of `columns`, each with its label below it, and notes below all. The
-/// sheet is as wide as the longest note, at least. Fails if there are no pictures, or the text
-/// cannot be drawn.
+/// sheet is as wide as the longest note, at least.
+///
+/// # Errors
+/// If there are no pictures, or the text cannot be drawn.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_precision_loss,

@@ -93,15 +93,20 @@ const ROOM: [i32; 3] = [26, 54, 42];
 /// Half the width of a mark.
 const MARK: i32 = 5;
 
-/// Draws the plot as SVG. Fails if the plotting library fails.
+/// Draws the plot as SVG.
+///
+/// # Errors
+/// If the plotting library fails.
 pub fn svg(report: &Report, look: Look) -> Result<String, PlotError> {
     let sheet = Sheet::new(report, look);
     let size = (WIDTH.cast_unsigned(), sheet.height().cast_unsigned());
     drawn_svg(size, |area, labels| sheet.draw(area, labels))
 }
 
-/// Draws the panel of one axis as SVG, or the overview if the axis was not measured. Fails if the
-/// plotting library fails.
+/// Draws the panel of one axis as SVG, or the overview if the axis was not measured.
+///
+/// # Errors
+/// If the plotting library fails.
 pub fn panel_svg(report: &Report, key: Option<&str>, look: Look) -> Result<String, PlotError> {
     let sheet = Sheet::new(report, look);
     let (width, height) = (640, 340);
@@ -111,7 +116,10 @@ pub fn panel_svg(report: &Report, key: Option<&str>, look: Look) -> Result<Strin
     })
 }
 
-/// Draws the plot as a picture. Fails if the plotting library fails.
+/// Draws the plot as a picture.
+///
+/// # Errors
+/// If the plotting library fails.
 pub fn png(report: &Report, look: Look) -> Result<Picture, PlotError> {
     let sheet = Sheet::new(report, look);
     let (width, height) = (WIDTH.cast_unsigned(), sheet.height().cast_unsigned());

@@ -69,7 +69,10 @@ const STYLE: &str = "body{font:16px/1.5 sans-serif;max-width:60rem;margin:2rem a
     .dark{display:none}@media(prefers-color-scheme:dark){body{background:#18181c;color:#e6e6ea}\
     .dark{display:block}.light{display:none}}";
 
-/// Writes the page as HTML in one file, for light and dark themes. Fails if a plot cannot be drawn.
+/// Writes the page as HTML in one file, for light and dark themes.
+///
+/// # Errors
+/// If a plot cannot be drawn.
 pub fn page_html(reports: &[Report]) -> Result<String, PlotError> {
     let mut text = head("What accuracy costs", "");
     let _ = writeln!(text, "<p>{}</p>\n<ul>", escaped(&basis(reports)));

@@ -23,7 +23,10 @@ pub struct PagePicture {
 }
 
 /// Writes the page. The last picture is the one that others are compared with; `machine` describes
-/// the computer. Fails if a plot cannot be drawn.
+/// the computer.
+///
+/// # Errors
+/// If a plot cannot be drawn.
 pub fn report_page(
     report: &Report,
     pictures: &[PagePicture],

@@ -31,8 +31,10 @@ pub struct Companion {
     pub folders: Vec<PathBuf>,
 }
 
-/// Lists the MTL files and textures of the model at `path`, in the order of their names. Fails if
-/// the model cannot be read.
+/// Lists the MTL files and textures of the model at `path`, in the order of their names.
+///
+/// # Errors
+/// If the model cannot be read.
 pub fn companions(path: &Path) -> Result<Vec<Companion>, LoadError> {
     let file = shown(path);
     let text = match unpacked_name(&file) {

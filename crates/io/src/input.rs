@@ -30,8 +30,10 @@ pub struct Input {
 }
 
 impl Input {
-    /// Reads the whole input, and unpacks it if it is compressed. Fails if it cannot be read, or is
-    /// too large.
+    /// Reads the whole input, and unpacks it if it is compressed.
+    ///
+    /// # Errors
+    /// If it cannot be read, or is too large.
     pub fn read(source: impl Read) -> Result<Self, LoadError> {
         let mut source = source;
         let mut bytes = Vec::new();
@@ -55,7 +57,10 @@ impl Input {
     }
 
     /// Reads a file whatever its name: its content tells whether it is a model or a scene, and
-    /// whether it is compressed. Fails if it cannot be read, or is too large.
+    /// whether it is compressed.
+    ///
+    /// # Errors
+    /// If it cannot be read, or is too large.
     pub fn of_file(path: &Path) -> Result<Self, LoadError> {
         let (file, _) = open_file(path, MOST_BYTES)?;
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
@@ -79,12 +84,18 @@ impl Input {
         has_stl_content(&self.bytes, self.bytes.len())
     }
 
-    /// Parses the input as a model. Fails like [`load`](super::load).
+    /// Parses the input as a model.
+    ///
+    /// # Errors
+    /// As [`load`](super::load).
     pub fn model(&self, options: &LoadOptions, progress: &Progress) -> Result<Loaded, LoadError> {
         parse(&self.bytes, &self.name, Some(&self.folder), options, progress)
     }
 
-    /// Parses the input as a scene. Fails like [`open`](super::open).
+    /// Parses the input as a scene.
+    ///
+    /// # Errors
+    /// As [`open`](super::open).
     pub fn scene(&self, progress: &Progress) -> Result<Opened, SceneFileError> {
         let text = std::str::from_utf8(&self.bytes).map_err(|_bytes| SceneFileError::File {
             file: self.name.clone(),

@@ -135,8 +135,10 @@ pub fn layer_npy(size: Size, layer: &LayerPicture<'_>) -> Vec<u8> {
 
 /// Encodes a layer as PNG, with a stamp if one is given: see
 /// [`encode_stamped`](crate::encode_stamped). Layers of colour are encoded by
-/// [`PICTURE_FORMATS`](crate::PICTURE_FORMATS). Fails with the reason if its numbers do not fit in
-/// 16 bits.
+/// [`PICTURE_FORMATS`](crate::PICTURE_FORMATS).
+///
+/// # Errors
+/// The reason, if its numbers do not fit in 16 bits.
 pub fn layer_png(
     size: Size,
     layer: &LayerPicture<'_>,
@@ -246,8 +248,10 @@ fn png_of(
     Ok(content)
 }
 
-/// Encodes layers as one OpenEXR file: 32 bits, ZIP, one channel for each of their channels. Fails
-/// with the reason if they cannot be encoded.
+/// Encodes layers as one OpenEXR file: 32 bits, ZIP, one channel for each of their channels.
+///
+/// # Errors
+/// The reason, if they cannot be encoded.
 pub fn layers_exr(
     size: Size,
     layers: &[LayerPicture<'_>],

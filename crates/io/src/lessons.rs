@@ -118,7 +118,10 @@ const LESSONS: &[(&str, &str)] = &[
     ("wheel", include_str!("../../../assets/lessons/wheel.marraztu")),
 ];
 
-/// Opens the scene of a lesson. Fails if no lesson has this name.
+/// Opens the scene of a lesson.
+///
+/// # Errors
+/// If no lesson has this name.
 pub fn lesson_scene(name: &str) -> Result<Opened, SceneFileError> {
     let found = LESSONS.iter().find(|(other, _)| *other == name);
     let Some((_, text)) = found else {

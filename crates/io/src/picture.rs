@@ -83,8 +83,10 @@ pub static PICTURE_FORMATS: &[PictureFormat] = &[
 ];
 
 impl PictureFormat {
-    /// Returns the format for a file's extension. Fails with all supported extensions if the name
-    /// has another one.
+    /// Returns the format for a file's extension.
+    ///
+    /// # Errors
+    /// All supported extensions, if the name has another one.
     pub fn of(path: &Path) -> Result<&'static Self, String> {
         let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
         let ending = ending.as_deref().and_then(|ending| ending.to_str()).unwrap_or_default();
@@ -97,8 +99,10 @@ impl PictureFormat {
         either(PICTURE_FORMATS.iter().map(|format| format!(".{}", format.endings[0])))
     }
 
-    /// Encodes a picture as the bytes of a file. Fails with the reason if the format cannot hold
-    /// it.
+    /// Encodes a picture as the bytes of a file.
+    ///
+    /// # Errors
+    /// The reason, if the format cannot hold it.
     pub fn encode(&self, picture: &Picture) -> Result<Vec<u8>, String> {
         let mut content = Vec::new();
         (self.encode)(picture, &mut content).map_err(|error| error.to_string())?;
@@ -106,8 +110,10 @@ impl PictureFormat {
     }
 
     /// Encodes a picture of this size that arrives in bands. `transparent` says whether pixels may
-    /// be transparent; if the picture is a single band, its pixels are asked. Fails if `next`
-    /// fails, or `to` cannot be written.
+    /// be transparent; if the picture is a single band, its pixels are asked.
+    ///
+    /// # Errors
+    /// If `next` fails, or `to` cannot be written.
     pub fn encode_bands(
         &self,
         size: Size,
@@ -160,8 +166,10 @@ pub(super) fn either(words: impl Iterator<Item = String>) -> String {
     }
 }
 
-/// Saves a picture in the format of the path's extension. Fails if the extension is unknown, or the
-/// file cannot be written; an existing file is unchanged.
+/// Saves a picture in the format of the path's extension.
+///
+/// # Errors
+/// If the extension is unknown, or the file cannot be written; an existing file is unchanged.
 pub fn save_picture(path: &Path, picture: &Picture) -> Result<(), SaveError> {
     let fail = |reason: String| SaveError::new(path, reason);
     let format = PictureFormat::of(path).map_err(fail)?;
@@ -173,8 +181,11 @@ pub fn save_picture(path: &Path, picture: &Picture) -> Result<(), SaveError> {
 }
 
 /// Saves a picture that arrives in bands of rows, from top to bottom. PNG and PPM are written band
-/// by band; other formats need the whole picture. Fails if the extension is unknown, `next` fails,
-/// or the file cannot be written; an existing file is unchanged.
+/// by band; other formats need the whole picture.
+///
+/// # Errors
+/// If the extension is unknown, `next` fails, or the file cannot be written; an existing file is
+/// unchanged.
 pub fn save_bands(
     path: &Path,
     size: Size,
@@ -192,13 +203,18 @@ pub fn save_bands(
 /// A function that returns the next rows of a picture, and `None` after the last ones.
 pub type NextBand<'a> = dyn FnMut() -> std::io::Result<Option<Picture>> + 'a;
 
-/// Saves an encoded picture. Fails if the file cannot be written; an existing file is unchanged.
+/// Saves an encoded picture.
+///
+/// # Errors
+/// If the file cannot be written; an existing file is unchanged.
 pub fn save_encoded(path: &Path, content: &[u8]) -> Result<(), SaveError> {
     replace(path, content, Worth::Product)
 }
 
-/// Checks that the format for `path` has an alpha channel, for transparent pictures. Fails if it
-/// has no alpha channel.
+/// Checks that the format for `path` has an alpha channel, for transparent pictures.
+///
+/// # Errors
+/// If it has no alpha channel.
 pub fn check_alpha(path: &Path) -> Result<(), SaveError> {
     let fail = |reason: String| SaveError::new(path, reason);
     let format = PictureFormat::of(path).map_err(fail)?;
@@ -211,20 +227,28 @@ pub fn check_alpha(path: &Path) -> Result<(), SaveError> {
 }
 
 /// Checks, before anything is drawn, whether a picture can be saved at `path`. An existing file
-/// must be a picture, or empty. Fails if it cannot.
+/// must be a picture, or empty.
+///
+/// # Errors
+/// If it cannot.
 pub fn check_picture_target(path: &Path) -> Result<(), SaveError> {
     PictureFormat::of(path).map_err(|reason| SaveError::new(path, reason))?;
     check_layer_target(path)
 }
 
-/// Works like [`check_picture_target`], for any format of layers. Fails if a file cannot be saved
-/// at `path`.
+/// Works like [`check_picture_target`], for any format of layers.
+///
+/// # Errors
+/// If a file cannot be saved at `path`.
 pub fn check_layer_target(path: &Path) -> Result<(), SaveError> {
     check_target(path)?;
     check_replaced(path)
 }
 
-/// Checks that an existing file at `path` is a picture, or empty. Fails if it is another file.
+/// Checks that an existing file at `path` is a picture, or empty.
+///
+/// # Errors
+/// If it is another file.
 pub fn check_replaced(path: &Path) -> Result<(), SaveError> {
     let fail = |reason: &str| SaveError::new(path, reason);
     let mut begin = Vec::new();

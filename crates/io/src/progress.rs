@@ -80,7 +80,10 @@ impl Progress {
         }
     }
 
-    /// Reports that `done` of `all` steps are done. Fails if the work was cancelled.
+    /// Reports that `done` of `all` steps are done.
+    ///
+    /// # Errors
+    /// If the work was cancelled.
     #[expect(clippy::cast_precision_loss, reason = "for the eye")]
     pub fn reached(&self, done: usize, all: usize) -> Result<(), Cancelled> {
         self.set((done as f64 / all.max(1) as f64).min(1.0));

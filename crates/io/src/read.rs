@@ -18,8 +18,9 @@ const MOST_UTF_16: u64 = 1 << 30;
 const PIECE: usize = 8 << 20;
 
 /// Checks whether `path` is a file that can be read, or a built-in example, without reading it.
-/// Fails if it does not exist, or is not a file: a folder, a device, or a pipe that was not
-/// inherited.
+///
+/// # Errors
+/// If it does not exist, or is not a file: a folder, a device, or a pipe that was not inherited.
 pub fn check_file(path: &Path) -> Result<(), LoadError> {
     if scene_text(path).is_some() {
         return Ok(());
@@ -75,8 +76,10 @@ fn is_inherited(path: &Path) -> bool {
     ["/dev/fd", "/proc/self/fd", "/dev/stdin"].iter().any(|begin| path.starts_with(begin))
 }
 
-/// Reads a whole file. Fails if it cannot be read, or is not a file: a folder, a device, or a pipe
-/// that was not inherited.
+/// Reads a whole file.
+///
+/// # Errors
+/// If it cannot be read, or is not a file: a folder, a device, or a pipe that was not inherited.
 pub fn read_file(path: &Path) -> Result<Vec<u8>, LoadError> {
     read(path, usize::MAX - 1, &Progress::new())
 }

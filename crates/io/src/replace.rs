@@ -151,7 +151,10 @@ pub struct NewFile {
 }
 
 impl NewFile {
-    /// Creates the file next to its path. Fails if it cannot be created.
+    /// Creates the file next to its path.
+    ///
+    /// # Errors
+    /// If it cannot be created.
     pub fn begin(path: &Path) -> Result<Self, SaveError> {
         let target = target(path)?;
         check_folder(path, &target)?;
@@ -161,13 +164,19 @@ impl NewFile {
         Ok(Self { path: path.to_owned(), target, part, file: Some(BufWriter::new(file)) })
     }
 
-    /// Appends a piece. Fails if it cannot be written.
+    /// Appends a piece.
+    ///
+    /// # Errors
+    /// If it cannot be written.
     pub fn push(&mut self, piece: &[u8]) -> Result<(), SaveError> {
         let written = self.file.as_mut().map_or(Ok(()), |file| file.write_all(piece));
         written.map_err(|error| SaveError::new(&self.path, reason(&error)))
     }
 
-    /// Replaces the file at the path. Fails if it cannot be written; an existing file is unchanged.
+    /// Replaces the file at the path.
+    ///
+    /// # Errors
+    /// If it cannot be written; an existing file is unchanged.
     pub fn finish(mut self) -> Result<(), SaveError> {
         let Some(file) = self.file.take() else { return Ok(()) };
         let file = file.into_inner().map_err(std::io::IntoInnerError::into_error);

@@ -51,7 +51,10 @@ impl Sources {
     }
 
     /// Checks that writing to `target` would not overwrite one of the files, even through another
-    /// path or a link. Fails if it would.
+    /// path or a link.
+    ///
+    /// # Errors
+    /// If it would.
     pub fn spare(&self, target: &Path) -> Result<(), SaveError> {
         let place = target.canonicalize().ok();
         match place.and_then(|place| self.places.get(&place)) {

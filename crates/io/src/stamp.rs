@@ -35,8 +35,10 @@ const HEAD: usize = 512;
 /// The longest stamp in bytes.
 const LONGEST: usize = 200;
 
-/// Encodes a picture with a stamp, as the bytes of a file. The stamp is printable ASCII. Fails with
-/// the reason if the format cannot hold the picture or the stamp.
+/// Encodes a picture with a stamp, as the bytes of a file. The stamp is printable ASCII.
+///
+/// # Errors
+/// The reason, if the format cannot hold the picture or the stamp.
 pub fn encode_stamped(
     format: &PictureFormat,
     picture: &Picture,

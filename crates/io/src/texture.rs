@@ -51,12 +51,17 @@ fn unknown() -> String {
 }
 
 /// Loads a texture that the user chooses: it repeats, and uses the model's texture coordinates.
-/// Fails if the file cannot be read or is not a picture.
+///
+/// # Errors
+/// If the file cannot be read or is not a picture.
 pub fn load_texture(path: &Path) -> Result<Shared<Texture>, LoadError> {
     load_texture_with(path, &mut Vec::new())
 }
 
-/// Works like [`load_texture`], and notes oddities of the file. Fails like [`load_texture`].
+/// Works like [`load_texture`], and notes oddities of the file.
+///
+/// # Errors
+/// The same as [`load_texture`].
 pub fn load_texture_with(
     path: &Path,
     findings: &mut Vec<Finding>,
@@ -65,15 +70,20 @@ pub fn load_texture_with(
 }
 
 /// Loads a picture in any input format, whatever its extension. Only the first picture of a GIF is
-/// used. Fails if the file cannot be read, is not a picture, or is too large.
+/// used.
+///
+/// # Errors
+/// If the file cannot be read, is not a picture, or is too large.
 pub fn load_picture(path: &Path) -> Result<Picture, LoadError> {
     let (picture, _) = decode(path, usize::MAX)?;
     Ok(picture)
 }
 
 /// Loads the pixels of a picture of 16 bits per channel, row by row: red, green, blue and opacity.
-/// `None` if it has fewer bits. Fails if the file cannot be read, is not a picture, or is too
-/// large.
+/// `None` if it has fewer bits.
+///
+/// # Errors
+/// If the file cannot be read, is not a picture, or is too large.
 pub fn load_deep_pixels(path: &Path) -> Result<Option<Vec<[u16; 4]>>, LoadError> {
     let (decoded, _) = decode_any(path, usize::MAX)?;
     if !matches!(

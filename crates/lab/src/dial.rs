@@ -172,8 +172,10 @@ impl Dial {
         Self { plan, pictures, ideal, begun: None, sample: None }
     }
 
-    /// Takes the next step: draws one picture or one window. Returns [`Cancelled`] if `wanted`
-    /// returns false. The step can then be taken again.
+    /// Takes the next step: draws one picture or one window.
+    ///
+    /// # Errors
+    /// [`Cancelled`] if `wanted` returns false. The step can then be taken again.
     pub fn step(
         &mut self,
         renderer: &mut Renderer,

@@ -80,7 +80,10 @@ impl Rows {
     }
 }
 
-/// Measures the kernel with this index. Fails if it was cancelled, or if every pair was disturbed.
+/// Measures the kernel with this index.
+///
+/// # Errors
+/// If it was cancelled, or if every pair was disturbed.
 pub fn measure(
     number: usize,
     clock: &mut dyn Clock,

@@ -209,8 +209,10 @@ impl From<Cancelled> for Unmeasured {
     }
 }
 
-/// Measures the time of B relative to A. Fails if it was cancelled, if every pair was disturbed, or
-/// if a picture differs from the one before.
+/// Measures the time of B relative to A.
+///
+/// # Errors
+/// If it was cancelled, if every pair was disturbed, or if a picture differs from the one before.
 pub fn measure(
     clock: &mut dyn Clock,
     source: &mut dyn PictureSource,
@@ -232,8 +234,10 @@ pub fn measure(
     abba(limits, watch, &mut draw)
 }
 
-/// Measures two tasks in pairs; `run` executes task 0 or 1 and returns its milliseconds. Fails if
-/// it was cancelled, if every pair was disturbed, or if `run` fails.
+/// Measures two tasks in pairs; `run` executes task 0 or 1 and returns its milliseconds.
+///
+/// # Errors
+/// If it was cancelled, if every pair was disturbed, or if `run` fails.
 pub fn abba(
     limits: &Limits,
     watch: &Watch,

@@ -216,8 +216,10 @@ impl Verdict {
     }
 }
 
-/// Measures a scene. `tell` is called with the results so far after every choice. Fails if it was
-/// cancelled or disturbed, or if a picture was not reproducible.
+/// Measures a scene. `tell` is called with the results so far after every choice.
+///
+/// # Errors
+/// If it was cancelled or disturbed, or if a picture was not reproducible.
 pub fn sweep(
     studio: &mut Studio,
     question: &Question,
@@ -253,7 +255,10 @@ impl std::fmt::Debug for Bench<'_> {
 }
 
 impl Bench<'_> {
-    /// Measures candidates; the first is the default. Fails like [`sweep`].
+    /// Measures candidates; the first is the default.
+    ///
+    /// # Errors
+    /// The same as [`sweep`].
     pub fn run(
         &mut self,
         candidates: Candidates,

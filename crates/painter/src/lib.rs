@@ -114,7 +114,10 @@ struct Band {
 }
 
 impl WindowPainter {
-    /// Creates a painter that has painted nothing. Fails if no threads can be started.
+    /// Creates a painter that has painted nothing.
+    ///
+    /// # Errors
+    /// If no threads can be started.
     pub fn new() -> Result<Self, rayon::ThreadPoolBuildError> {
         // A separate pool, because the threads that draw the viewport may be busy for long.
         let threads = std::thread::available_parallelism().map_or(1, usize::from).min(8);

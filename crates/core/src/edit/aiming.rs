@@ -12,8 +12,10 @@ const SUN: f64 = 0.6;
 /// A light within this distance of an object's centre, in the object's radii, is in the centre.
 const NEAR: f64 = 0.1;
 
-/// Returns the selected light, if it can be aimed. Refused if the light is neither a spot nor a
-/// sun, or is locked.
+/// Returns the selected light, if it can be aimed.
+///
+/// # Errors
+/// If the light is neither a spot nor a sun, or is locked.
 pub fn can_aim(scene: &Scene, view: &View) -> Result<LightId, Refusal> {
     let (id, light) = set_transform::selected_light(scene, view)?;
     set_transform::unlocked(scene, ItemId::Light(id))?;
@@ -42,8 +44,10 @@ pub fn stands(scene: &Scene, view: &View, id: LightId) -> Option<Aim> {
     }
 }
 
-/// Aims the selected light at the centre of the selected object. Refused if the scene has no
-/// object, or the light cannot be aimed or is in the object's centre.
+/// Aims the selected light at the centre of the selected object.
+///
+/// # Errors
+/// If the scene has no object, or the light cannot be aimed or is in the object's centre.
 pub fn aim_at_selection(scene: &Scene, view: &View, phase: GesturePhase) -> Change {
     let id = can_aim(scene, view)?;
     let (object, _) = set_transform::selected_object(scene, view)?;
@@ -57,7 +61,9 @@ pub fn aim_at_selection(scene: &Scene, view: &View, phase: GesturePhase) -> Chan
 }
 
 /// Aims a light at a point. A spot that follows its owner becomes fixed at its current position.
-/// Refused if the light cannot be aimed or is at that point.
+///
+/// # Errors
+/// If the light cannot be aimed or is at that point.
 pub fn aim(scene: &Scene, view: &View, id: LightId, at: DVec3, phase: GesturePhase) -> Change {
     let light = scene.lights.get(id).ok_or(Refusal::Gone)?;
     let from = stands(scene, view, id).ok_or(Refusal::NotAimed)?.position;

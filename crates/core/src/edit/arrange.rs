@@ -23,7 +23,9 @@ pub fn ground(scene: &Scene, id: ObjectId) -> f64 {
 }
 
 /// Moves the selected object up or down until its lowest point is at the height of the ground.
-/// Refused if no object is selected, or it is empty, locked, or already on the ground.
+///
+/// # Errors
+/// If no object is selected, or it is empty, locked, or already on the ground.
 pub fn drop_to_ground(scene: &Scene, view: &View, phase: GesturePhase) -> Change {
     let (id, object) = set_transform::selected_object(scene, view)?;
     let bounds = world_box(object, view.time).ok_or(Refusal::NoPolygons)?;
@@ -34,8 +36,10 @@ pub fn drop_to_ground(scene: &Scene, view: &View, phase: GesturePhase) -> Change
     moved(scene, view, id, DVec3::Y * by, phase)
 }
 
-/// Resets the selected object to the placement of its file. Refused if no object is selected, or it
-/// is locked or has not been moved.
+/// Resets the selected object to the placement of its file.
+///
+/// # Errors
+/// If no object is selected, or it is locked or has not been moved.
 pub fn reset(scene: &Scene, view: &View, phase: GesturePhase) -> Change {
     let (id, object) = set_transform::selected_object(scene, view)?;
     if *object.placement.now() == DMat4::IDENTITY {
@@ -45,8 +49,10 @@ pub fn reset(scene: &Scene, view: &View, phase: GesturePhase) -> Change {
 }
 
 /// Moves the objects among `others` along an axis of the world until the centres of their boxes are
-/// in line with the centre of the selected object's box. Refused if the list has no such objects,
-/// or all of them are locked or already in line.
+/// in line with the centre of the selected object's box.
+///
+/// # Errors
+/// If the list has no such objects, or all of them are locked or already in line.
 pub fn align(
     scene: &Scene,
     view: &View,

@@ -34,7 +34,10 @@ impl Copies {
 }
 
 /// Adds copies of the selected items. Copies of objects are moved by the width of the originals, as
-/// often as needed to reach a free place. Refused if nothing is selected.
+/// often as needed to reach a free place.
+///
+/// # Errors
+/// If nothing is selected.
 pub fn duplicate(scene: &Scene, view: &View, others: &[ItemId]) -> Change {
     let all = selection::selected(view).into_iter().chain(others.iter().copied());
     let object = |item| match item {
@@ -49,8 +52,10 @@ pub fn duplicate(scene: &Scene, view: &View, others: &[ItemId]) -> Change {
 }
 
 /// Adds items under new ids and free names. If the place of an object is taken by an equal object,
-/// all items are moved next to it. Spots and cameras stay attached to copied objects. Refused if an
-/// item is invalid in the scene.
+/// all items are moved next to it. Spots and cameras stay attached to copied objects.
+///
+/// # Errors
+/// If an item is invalid in the scene.
 pub fn insert(scene: &Scene, view: &View, copies: Copies) -> Change {
     let Copies { objects, cameras, lights } = copies;
     let by = free_place(scene, view, &objects.iter().map(|(_, it)| it).collect::<Vec<_>>());

@@ -64,13 +64,19 @@ pub const MODELS_FROM: [f64; 2] = [30.0, 20.0];
 /// The margin around models in the picture, as a fraction of the distance.
 const MARGIN: f64 = 1.0 / 20.0;
 
-/// Frames the selected object (key `.`). Refused if no object is selected, or it has no vertices.
+/// Frames the selected object (key `.`).
+///
+/// # Errors
+/// If no object is selected, or it has no vertices.
 pub fn selection(scene: &Scene, view: &View) -> Change {
     let (id, _) = set_transform::selected_object(scene, view)?;
     objects(scene, view, &[id])
 }
 
-/// Frames everything visible (key Home). Refused if nothing is visible.
+/// Frames everything visible (key Home).
+///
+/// # Errors
+/// If nothing is visible.
 pub fn all(scene: &Scene, view: &View) -> Change {
     objects(scene, view, &shown(scene, view))
 }
@@ -83,14 +89,19 @@ fn shown(scene: &Scene, view: &View) -> Vec<ObjectId> {
     scene.objects.iter().filter(|(id, object)| shown(id, object)).map(|(id, _)| id).collect()
 }
 
-/// Frames these objects. Refused if no object has vertices.
+/// Frames these objects.
+///
+/// # Errors
+/// If no object has vertices.
 pub fn objects(scene: &Scene, view: &View, ids: &[ObjectId]) -> Change {
     framed(scene, view, ids, scene.selected_camera(view).pose.now().axes, 0.0)
 }
 
 /// Frames everything visible with a margin, from `right` degrees to the right of the front and `up`
-/// degrees above it. This is the view of models that come without a scene. Refused if nothing is
-/// visible.
+/// degrees above it. This is the view of models that come without a scene.
+///
+/// # Errors
+/// If nothing is visible.
 pub fn models(scene: &Scene, view: &View, [right, up]: [f64; 2]) -> Change {
     let axes =
         math::rotation(DVec3::Y, right.to_radians()) * math::rotation(DVec3::X, -up.to_radians());
@@ -121,8 +132,10 @@ pub fn models_distance(first: &Lens, r: f64) -> f64 {
     lens(first, r * (1.0 + MARGIN)).0
 }
 
-/// Frames the selected object from a side (Ctrl+1, 3 and 7). Refused if no object is selected, or
-/// it has no vertices.
+/// Frames the selected object from a side (Ctrl+1, 3 and 7).
+///
+/// # Errors
+/// If no object is selected, or it has no vertices.
 pub fn side(scene: &Scene, view: &View, side: Side) -> Change {
     let (id, _) = set_transform::selected_object(scene, view)?;
     framed(scene, view, &[id], side.axes(), 0.0)

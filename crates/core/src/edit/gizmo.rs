@@ -58,8 +58,10 @@ impl Pivot {
 /// Returns the pivot for transforming the selected item of the subject.
 ///
 /// In the global frame an object is rotated and scaled about the world's origin, so the handles are
-/// there. Refused if the item cannot be transformed, or is the camera through which the picture is
-/// seen.
+/// there.
+///
+/// # Errors
+/// If the item cannot be transformed, or is the camera through which the picture is seen.
 pub fn pivot(scene: &Scene, view: &View) -> Result<Pivot, Refusal> {
     let kind = view.transformation;
     match view.subject {
@@ -103,8 +105,10 @@ pub fn pivot(scene: &Scene, view: &View) -> Result<Pivot, Refusal> {
     }
 }
 
-/// Transforms the selected item of the subject by an amount. Refused if the item cannot be
-/// transformed in this way.
+/// Transforms the selected item of the subject by an amount.
+///
+/// # Errors
+/// If the item cannot be transformed in this way.
 pub fn transform(scene: &Scene, view: &View, amount: Amount, phase: GesturePhase) -> Change {
     match amount {
         Amount::Move(delta) => transform::translate(scene, view, delta, phase),

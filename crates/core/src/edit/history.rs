@@ -49,8 +49,10 @@ impl History {
     }
 
     /// Applies a command, and records the step for undoing it under `label`. In a gesture, the last
-    /// label is kept. Undone steps are discarded. Refused if the command does not fit the scene.
-    /// Scene and history are then unchanged.
+    /// label is kept. Undone steps are discarded.
+    ///
+    /// # Errors
+    /// If the command does not fit the scene. Scene and history are then unchanged.
     pub fn perform(
         &mut self,
         scene: &mut Scene,
@@ -83,8 +85,10 @@ impl History {
     }
 
     /// Moves the view: applies a command that changes only poses and lenses of cameras. This is not
-    /// a step. Any other command becomes a step with the label "Move the view". Refused if the
-    /// command does not fit the scene. Scene and history are then unchanged.
+    /// a step. Any other command becomes a step with the label "Move the view".
+    ///
+    /// # Errors
+    /// If the command does not fit the scene. Scene and history are then unchanged.
     pub fn navigate(
         &mut self,
         scene: &mut Scene,

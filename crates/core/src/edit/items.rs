@@ -53,14 +53,18 @@ pub fn insert_camera(scene: &Scene, model: Shared<Model>, material: MaterialChoi
     put_camera(scene, camera)
 }
 
-/// Adds a white light in the lowest free slot. Refused if it is a spot, and the owner is not in the
-/// scene.
+/// Adds a white light in the lowest free slot.
+///
+/// # Errors
+/// If it is a spot, and the owner is not in the scene.
 pub fn insert_light(scene: &Scene, kind: LightKind) -> Change {
     put_light(scene, Light::new(&light_name(&kind), 0, kind))
 }
 
 /// Adds a copy of an item, without its stack of transformations. Moves copies of objects by `by`.
-/// Refused if the item is gone.
+///
+/// # Errors
+/// If the item is gone.
 pub fn duplicate(scene: &Scene, id: ItemId, by: DVec3) -> Change {
     match id {
         ItemId::Object(id) => {
@@ -86,8 +90,10 @@ pub fn duplicate(scene: &Scene, id: ItemId, by: DVec3) -> Change {
     }
 }
 
-/// Removes an item and the spots attached to it. Refused if the item is gone or locked, or is the
-/// last camera.
+/// Removes an item and the spots attached to it.
+///
+/// # Errors
+/// If the item is gone or locked, or is the last camera.
 pub fn remove(scene: &Scene, id: ItemId) -> Change {
     if !scene.contains(id) {
         return Err(Refusal::Gone);
@@ -111,7 +117,10 @@ pub fn remove(scene: &Scene, id: ItemId) -> Change {
     Ok(one_or_batch(commands))
 }
 
-/// Renames an item. Refused if the name is empty, or the item is gone.
+/// Renames an item.
+///
+/// # Errors
+/// If the name is empty, or the item is gone.
 pub fn rename(scene: &Scene, id: ItemId, name: &str) -> Change {
     let name = name.trim();
     if name.is_empty() {
@@ -125,12 +134,18 @@ pub fn rename(scene: &Scene, id: ItemId, name: &str) -> Change {
     }
 }
 
-/// Moves an item to another place in its list. Refused if the item is gone.
+/// Moves an item to another place in its list.
+///
+/// # Errors
+/// If the item is gone.
 pub fn reorder(scene: &Scene, id: ItemId, to: usize) -> Change {
     if scene.contains(id) { Ok(Command::Reorder { id, to }) } else { Err(Refusal::Gone) }
 }
 
-/// Shows or hides an object or a camera; switches a light on or off. Refused if the item is gone.
+/// Shows or hides an object or a camera; switches a light on or off.
+///
+/// # Errors
+/// If the item is gone.
 pub fn toggle_shown(scene: &Scene, id: ItemId) -> Change {
     match id {
         ItemId::Object(id) => change_object(scene, id, |object| object.visible = !object.visible),
@@ -139,13 +154,19 @@ pub fn toggle_shown(scene: &Scene, id: ItemId) -> Change {
     }
 }
 
-/// Locks an item, or unlocks it. Refused if the item is gone.
+/// Locks an item, or unlocks it.
+///
+/// # Errors
+/// If the item is gone.
 pub fn toggle_locked(scene: &Scene, id: ItemId) -> Change {
     let locked = !scene.locked.contains(&id);
     if scene.contains(id) { Ok(Command::Lock { id, locked }) } else { Err(Refusal::Gone) }
 }
 
-/// Shows or hides one part of an object. Refused if the object is gone, or does not have this part.
+/// Shows or hides one part of an object.
+///
+/// # Errors
+/// If the object is gone, or does not have this part.
 pub fn toggle_part(scene: &Scene, id: ObjectId, part: u32) -> Change {
     let object = scene.objects.get(id).ok_or(Refusal::Gone)?;
     if part as usize >= object.model.mesh.parts().len() {
@@ -159,8 +180,10 @@ pub fn toggle_part(scene: &Scene, id: ObjectId, part: u32) -> Change {
 }
 
 /// Splits an object into one object for each part. The object itself keeps the first part, and the
-/// others follow it in the list. All share the model. Refused if the object is gone, or has only
-/// one part or too many parts.
+/// others follow it in the list. All share the model.
+///
+/// # Errors
+/// If the object is gone, or has only one part or too many parts.
 pub fn split(scene: &Scene, id: ObjectId) -> Change {
     let object = scene.objects.get(id).ok_or(Refusal::Gone)?;
     let at = scene.objects.position(id).ok_or(Refusal::Gone)?;
@@ -203,7 +226,10 @@ fn part_names(scene: &Scene, object: &Object, parts: &BTreeSet<u32>) -> Vec<Stri
     parts.iter().map(name).collect()
 }
 
-/// Sets the lens of a camera. Refused if the lens is invalid, or the camera is gone.
+/// Sets the lens of a camera.
+///
+/// # Errors
+/// If the lens is invalid, or the camera is gone.
 pub fn set_lens(scene: &Scene, id: CameraId, lens: Lens) -> Change {
     if !lens.is_valid() {
         return Err(CommandError::Lens.into());
@@ -227,7 +253,10 @@ pub fn why_no_crease(model: &Model, file_normals: bool) -> Option<&'static str> 
 }
 
 /// Sets the crease angle of an object's model. If another object of the same file already has this
-/// angle, its model is shared. Refused if the object is gone, or the angle has no effect on it.
+/// angle, its model is shared.
+///
+/// # Errors
+/// If the object is gone, or the angle has no effect on it.
 pub fn set_crease(scene: &Scene, id: ObjectId, crease: Crease) -> Change {
     let object = scene.objects.get(id).ok_or(Refusal::Gone)?;
     if let Some(reason) = why_no_crease(&object.model, object.file_normals) {
@@ -242,8 +271,10 @@ pub fn set_crease(scene: &Scene, id: ObjectId, crease: Crease) -> Change {
     change_object(scene, id, |object| object.model = model)
 }
 
-/// Changes properties of an object, except its placement and its spin. Refused if the object is
-/// gone.
+/// Changes properties of an object, except its placement and its spin.
+///
+/// # Errors
+/// If the object is gone.
 pub fn change_object(scene: &Scene, id: ObjectId, change: impl FnOnce(&mut Object)) -> Change {
     let mut object = scene.objects.get(id).ok_or(Refusal::Gone)?.clone();
     change(&mut object);
@@ -261,14 +292,20 @@ pub fn change_all_objects(scene: &Scene, change: impl Fn(&mut Object)) -> Comman
     Command::Batch(scene.objects.iter().map(changed).collect())
 }
 
-/// Changes properties of a camera, except its pose. Refused if the camera is gone.
+/// Changes properties of a camera, except its pose.
+///
+/// # Errors
+/// If the camera is gone.
 pub fn change_camera(scene: &Scene, id: CameraId, change: impl FnOnce(&mut Camera)) -> Change {
     let mut camera = scene.cameras.get(id).ok_or(Refusal::Gone)?.clone();
     change(&mut camera);
     Ok(Command::Replace(Item::Camera(id, Box::new(camera))))
 }
 
-/// Changes properties of a light, except its position and direction. Refused if the light is gone.
+/// Changes properties of a light, except its position and direction.
+///
+/// # Errors
+/// If the light is gone.
 pub fn change_light(scene: &Scene, id: LightId, change: impl FnOnce(&mut Light)) -> Change {
     try_change_light(scene, id, |light| {
         change(light);

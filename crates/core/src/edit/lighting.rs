@@ -43,7 +43,9 @@ const MOST_SUBSETS: usize = 8;
 ///
 /// The bulb and the spot of the selected object are switched off, since the bulb would be in the
 /// picture and the spot inside a model. The camera's spot is opened until its edge disappears.
-/// Refused if there is nothing to light.
+///
+/// # Errors
+/// If there is nothing to light.
 pub fn models(scene: &Scene, view: &View) -> Change {
     let ids: Vec<ObjectId> = scene.objects.ids().collect();
     let sphere = framing::sphere(scene, view, &ids).ok_or(Refusal::NothingToFrame)?;

@@ -55,7 +55,10 @@ pub const fn fixed() -> SpotOwner {
     SpotOwner::Fixed(Tracked::new(Aim { position: DVec3::ZERO, direction: DVec3::NEG_Z }))
 }
 
-/// Switches the light in a slot on or off (keys 0 to 9). Refused if the slot is empty.
+/// Switches the light in a slot on or off (keys 0 to 9).
+///
+/// # Errors
+/// If the slot is empty.
 pub fn toggle_slot(scene: &Scene, slot: u32) -> Change {
     let in_slot = scene.lights.iter().find(|(_, light)| light.slot == slot);
     let (id, _) = in_slot.ok_or(Refusal::EmptySlot(slot))?;
@@ -63,8 +66,10 @@ pub fn toggle_slot(scene: &Scene, slot: u32) -> Change {
 }
 
 /// Switches all lights off except the selected one. If it is already alone, switches the lights of
-/// `before` back on, or all lights if `before` has no other remaining light. Refused if no light is
-/// selected, or it is the only light.
+/// `before` back on, or all lights if `before` has no other remaining light.
+///
+/// # Errors
+/// If no light is selected, or it is the only light.
 pub fn solo(scene: &Scene, view: &View, before: &BTreeSet<LightId>) -> Change {
     let (own, _) = set_transform::selected_light(scene, view)?;
     if scene.lights.len() < 2 {
@@ -91,8 +96,10 @@ pub fn lit(scene: &Scene) -> BTreeSet<LightId> {
     scene.lights.iter().filter(|(_, light)| light.on).map(|(id, _)| id).collect()
 }
 
-/// Changes one channel of the selected light, within 0 to 255 (keys q Q, v V, a A). Refused at the
-/// end of the range, or if the subject is not lights.
+/// Changes one channel of the selected light, within 0 to 255 (keys q Q, v V, a A).
+///
+/// # Errors
+/// At the end of the range, or if the subject is not lights.
 pub fn step_color(scene: &Scene, view: &View, channel: Channel, by: i16) -> Change {
     let (id, light) = subject_light(scene, view)?;
     let index = channel as usize;
@@ -106,7 +113,9 @@ pub fn step_color(scene: &Scene, view: &View, channel: Channel, by: i16) -> Chan
 }
 
 /// Changes the aperture of the selected spot by an angle in degrees, within 0 to 90 (+ and -).
-/// Refused at the end of the range, for other lights, or if the subject is not lights.
+///
+/// # Errors
+/// At the end of the range, for other lights, or if the subject is not lights.
 pub fn step_aperture(scene: &Scene, view: &View, degrees: f64) -> Change {
     let (id, light) = subject_light(scene, view)?;
     let old = (HALF_APERTURE.get)(&light.kind).ok_or(Refusal::NotASpot)?;
@@ -118,8 +127,10 @@ pub fn step_aperture(scene: &Scene, view: &View, degrees: f64) -> Change {
     set_number(scene, id, &HALF_APERTURE, new)
 }
 
-/// Sets a number of a light, clamped to its valid range. Refused if the light has no such number,
-/// or the number is not finite.
+/// Sets a number of a light, clamped to its valid range.
+///
+/// # Errors
+/// If the light has no such number, or the number is not finite.
 pub fn set_number(scene: &Scene, id: LightId, number: &LightNumber, to: f64) -> Change {
     if !to.is_finite() {
         return Err(Refusal::TooLarge);
@@ -131,8 +142,10 @@ pub fn set_number(scene: &Scene, id: LightId, number: &LightNumber, to: f64) -> 
     })
 }
 
-/// Attaches a spot to another owner. Refused if the light is not a spot, or the owner is not in the
-/// scene.
+/// Attaches a spot to another owner.
+///
+/// # Errors
+/// If the light is not a spot, or the owner is not in the scene.
 pub fn set_owner(scene: &Scene, id: LightId, to: SpotOwner) -> Change {
     check_owner(scene, &to)?;
     set_transform::unlocked(scene, ItemId::Light(id))?;
@@ -147,7 +160,10 @@ pub fn set_owner(scene: &Scene, id: LightId, to: SpotOwner) -> Change {
     })
 }
 
-/// Sets the key of a light. Refused if another light has this key.
+/// Sets the key of a light.
+///
+/// # Errors
+/// If another light has this key.
 pub fn set_slot(scene: &Scene, id: LightId, slot: u32) -> Change {
     if scene.lights.iter().any(|(other, light)| other != id && light.slot == slot) {
         return Err(Refusal::SlotTaken(slot));
@@ -155,8 +171,10 @@ pub fn set_slot(scene: &Scene, id: LightId, slot: u32) -> Change {
     change_light(scene, id, |light| light.slot = slot)
 }
 
-/// Sets the attenuation of a light with distance. Refused if the light would become infinite or
-/// negative.
+/// Sets the attenuation of a light with distance.
+///
+/// # Errors
+/// If the light would become infinite or negative.
 pub fn set_attenuation(scene: &Scene, id: LightId, to: Attenuation) -> Change {
     if !to.is_valid() {
         return Err(CommandError::Attenuation.into());
@@ -164,7 +182,10 @@ pub fn set_attenuation(scene: &Scene, id: LightId, to: Attenuation) -> Change {
     change_light(scene, id, |light| light.attenuation = to)
 }
 
-/// Switches the shadows of a light on or off. Refused if the light is ambient, or gone.
+/// Switches the shadows of a light on or off.
+///
+/// # Errors
+/// If the light is ambient, or gone.
 pub fn toggle_shadows(scene: &Scene, id: LightId) -> Change {
     let light = scene.lights.get(id).ok_or(Refusal::Gone)?;
     if !light.can_cast_shadows() {
@@ -173,15 +194,19 @@ pub fn toggle_shadows(scene: &Scene, id: LightId) -> Change {
     change_light(scene, id, |light| light.shadows = !light.shadows)
 }
 
-/// Switches the shadows of the selected light on or off. Refused if no light is selected, or it is
-/// ambient.
+/// Switches the shadows of the selected light on or off.
+///
+/// # Errors
+/// If no light is selected, or it is ambient.
 pub fn toggle_selected_shadows(scene: &Scene, view: &View) -> Change {
     let (id, _) = set_transform::selected_light(scene, view)?;
     toggle_shadows(scene, id)
 }
 
-/// Switches the shadows of all lights off if any light casts shadows, else on. Refused if no light
-/// can cast shadows.
+/// Switches the shadows of all lights off if any light casts shadows, else on.
+///
+/// # Errors
+/// If no light can cast shadows.
 pub fn toggle_all_shadows(scene: &Scene) -> Change {
     let to = !casts_shadows(scene);
     let able = scene.lights.iter().filter(|(_, light)| light.can_cast_shadows());

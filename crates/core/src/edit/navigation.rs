@@ -23,7 +23,10 @@ pub struct Pointer {
 }
 
 /// Turns the camera in place: `yaw` to the left, `pitch` upwards, in radians. In analysis, the
-/// camera orbits in the opposite direction instead. Refused if the observer is an object.
+/// camera orbits in the opposite direction instead.
+///
+/// # Errors
+/// If the observer is an object.
 pub fn look(scene: &Scene, view: &View, yaw: f64, pitch: f64, phase: GesturePhase) -> Change {
     let pose = looking_pose(scene, view)?;
     if pose.mode != CameraMode::Fly {
@@ -34,8 +37,10 @@ pub fn look(scene: &Scene, view: &View, yaw: f64, pitch: f64, phase: GesturePhas
 }
 
 /// Orbits the camera around the centre of the selected object (or the origin without an object), by
-/// `yaw` about the world's Y and `pitch` about the camera's X, in radians. Refused if the observer
-/// is an object.
+/// `yaw` about the world's Y and `pitch` about the camera's X, in radians.
+///
+/// # Errors
+/// If the observer is an object.
 pub fn orbit(scene: &Scene, view: &View, yaw: f64, pitch: f64, phase: GesturePhase) -> Change {
     let pose = looking_pose(scene, view)?;
     let turn = set_transform::turn(DVec3::Y, yaw)? * set_transform::turn(pose.axes.x_axis, pitch)?;
@@ -52,8 +57,10 @@ pub fn orbit(scene: &Scene, view: &View, yaw: f64, pitch: f64, phase: GesturePha
 }
 
 /// Pans the camera for a pointer that has moved by `pixels` (x to the right, y down). Points at the
-/// depth of the selected object follow the pointer. Returns to fly. Refused if the observer is an
-/// object.
+/// depth of the selected object follow the pointer. Returns to fly.
+///
+/// # Errors
+/// If the observer is an object.
 pub fn pan(scene: &Scene, view: &View, pixels: DVec2, size: Size, phase: GesturePhase) -> Change {
     let pose = looking_pose(scene, view)?;
     let units = pixels * units_per_pixel(scene, view, size, depth(scene, view, &pose));
@@ -62,7 +69,10 @@ pub fn pan(scene: &Scene, view: &View, pixels: DVec2, size: Size, phase: Gesture
 }
 
 /// Moves the camera in its frame, for the keys that fly while the right button is held. Returns to
-/// fly. Refused if the observer is an object.
+/// fly.
+///
+/// # Errors
+/// If the observer is an object.
 pub fn fly(scene: &Scene, view: &View, delta: DVec3, phase: GesturePhase) -> Change {
     let pose = moved(&looking_pose(scene, view)?, delta);
     set_transform::pose(scene, view.camera, Pose { mode: CameraMode::Fly, ..pose }, phase)
@@ -72,8 +82,10 @@ pub fn fly(scene: &Scene, view: &View, delta: DVec3, phase: GesturePhase) -> Cha
 ///
 /// In perspective the eye moves along the ray through the pointer; in orthographic projection the
 /// half-size changes. In both cases the hit stays under the pointer. In analysis the camera moves
-/// along its axis, and stops at the distance of the near plane from the centre. Refused if the
-/// observer is an object, or the camera is at its nearest distance.
+/// along its axis, and stops at the distance of the near plane from the centre.
+///
+/// # Errors
+/// If the observer is an object, or the camera is at its nearest distance.
 pub fn zoom(
     scene: &Scene,
     view: &View,

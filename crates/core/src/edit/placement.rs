@@ -61,8 +61,10 @@ pub fn camera_degrees(pose: &Pose) -> DVec3 {
     DVec3::new(yaw, pitch, roll).map(f64::to_degrees)
 }
 
-/// Sets the position of an object's origin. Refused if the numbers are not finite, or the object is
-/// gone.
+/// Sets the position of an object's origin.
+///
+/// # Errors
+/// If the numbers are not finite, or the object is gone.
 pub fn object_translation(
     scene: &Scene,
     view: &View,
@@ -74,8 +76,10 @@ pub fn object_translation(
     set_transform::object(scene, view, id, DMat4 { w_axis: to.extend(1.0), ..m }, phase)
 }
 
-/// Sets the rotation of an object, in degrees as in [`turn_degrees`]. Refused if the numbers are
-/// not finite, or the object is gone.
+/// Sets the rotation of an object, in degrees as in [`turn_degrees`].
+///
+/// # Errors
+/// If the numbers are not finite, or the object is gone.
 pub fn object_turn(
     scene: &Scene,
     view: &View,
@@ -89,8 +93,10 @@ pub fn object_turn(
     set_transform::object(scene, view, id, math::placed(linear, translation(&m)), phase)
 }
 
-/// Sets the scale of an object, as in [`scale`]. Negative factors mirror. Refused if the object
-/// would become flat, a number is not finite, or the object is gone.
+/// Sets the scale of an object, as in [`scale`]. Negative factors mirror.
+///
+/// # Errors
+/// If the object would become flat, a number is not finite, or the object is gone.
 pub fn object_scale(
     scene: &Scene,
     view: &View,
@@ -117,8 +123,10 @@ pub fn object_scale(
     set_transform::object(scene, view, id, math::placed(linear, translation(&m)), phase)
 }
 
-/// Sets the whole placement of an object. Refused if the placement is flat or not finite, or the
-/// object is gone.
+/// Sets the whole placement of an object.
+///
+/// # Errors
+/// If the placement is flat or not finite, or the object is gone.
 pub fn object(scene: &Scene, view: &View, id: ObjectId, to: DMat4, phase: GesturePhase) -> Change {
     if to.is_finite() && !math::has_full_rank(DMat3::from_mat4(to)) {
         return Err(Refusal::Flat);
@@ -152,8 +160,10 @@ pub(super) fn alike(old: &DMat4, new: &DMat4, own: &DMat4) -> Option<DMat4> {
     whole.then(|| math::placed(linear, place))
 }
 
-/// Sets the eye of a camera. In analysis the camera keeps looking at its centre. Refused if the
-/// numbers are not finite, or the camera is gone.
+/// Sets the eye of a camera. In analysis the camera keeps looking at its centre.
+///
+/// # Errors
+/// If the numbers are not finite, or the camera is gone.
 pub fn camera_eye(
     scene: &Scene,
     view: &View,
@@ -171,8 +181,10 @@ pub fn camera_eye(
 }
 
 /// Sets yaw, pitch and roll of a camera, in degrees as in [`camera_degrees`]. In analysis the
-/// camera orbits its centre at the same distance. Refused if the numbers are not finite, or the
-/// camera is gone.
+/// camera orbits its centre at the same distance.
+///
+/// # Errors
+/// If the numbers are not finite, or the camera is gone.
 pub fn camera_turn(
     scene: &Scene,
     view: &View,
@@ -191,14 +203,18 @@ pub fn camera_turn(
     set_transform::pose(scene, id, Pose { eye, axes, ..pose }, phase)
 }
 
-/// Sets the whole pose of a camera, and returns it to fly. Refused if the numbers are not finite,
-/// or the camera is gone.
+/// Sets the whole pose of a camera, and returns it to fly.
+///
+/// # Errors
+/// If the numbers are not finite, or the camera is gone.
 pub fn camera(scene: &Scene, id: CameraId, eye: DVec3, axes: DMat3, phase: GesturePhase) -> Change {
     set_transform::pose(scene, id, Pose { eye, axes, mode: CameraMode::Fly }, phase)
 }
 
-/// Sets the position of a bulb or a free spot. Refused if the light's position cannot be set, or
-/// the numbers are not finite.
+/// Sets the position of a bulb or a free spot.
+///
+/// # Errors
+/// If the light's position cannot be set, or the numbers are not finite.
 pub fn light_position(scene: &Scene, id: LightId, to: DVec3, phase: GesturePhase) -> Change {
     let light = scene.lights.get(id).ok_or(Refusal::Gone)?;
     let place = match set_transform::place_of(light)? {
@@ -208,8 +224,10 @@ pub fn light_position(scene: &Scene, id: LightId, to: DVec3, phase: GesturePhase
     set_transform::light(scene, id, place, phase)
 }
 
-/// Sets the direction of a sun or a free spot. `to` may have any length except 0. Refused if the
-/// light's direction cannot be set, or `to` has length 0.
+/// Sets the direction of a sun or a free spot. `to` may have any length except 0.
+///
+/// # Errors
+/// If the light's direction cannot be set, or `to` has length 0.
 pub fn light_direction(scene: &Scene, id: LightId, to: DVec3, phase: GesturePhase) -> Change {
     let light = scene.lights.get(id).ok_or(Refusal::Gone)?;
     if to == DVec3::ZERO {

@@ -12,8 +12,10 @@ use crate::scene::{
 
 /// Replaces all objects by these, frames and lights them, and sets a neutral background. Returns
 /// the change, and the view of the changed scene, with steps by size. The first object is selected,
-/// and the camera is in analysis of it without being turned. Refused if the scene cannot be changed
-/// in this way.
+/// and the camera is in analysis of it without being turned.
+///
+/// # Errors
+/// If the scene cannot be changed in this way.
 pub fn alone(scene: &Scene, view: &View, objects: Vec<Object>) -> Result<(Command, View), Refusal> {
     let mut scratch = Scratch { scene: scene.clone(), view: view.clone(), commands: Vec::new() };
     for id in scene.objects.ids() {

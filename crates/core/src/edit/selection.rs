@@ -22,7 +22,10 @@ pub struct Selection {
     pub command: Option<Command>,
 }
 
-/// Selects an item in its list. The subject stays. Refused if the item is gone.
+/// Selects an item in its list. The subject stays.
+///
+/// # Errors
+/// If the item is gone.
 pub fn select(scene: &Scene, view: &View, id: ItemId) -> Result<Selection, Refusal> {
     select_in(scene, view, id, GesturePhase::First)
 }
@@ -88,16 +91,20 @@ fn left_in_fly(scene: &Scene, id: ObjectId) -> Vec<Command> {
     fallen.map(fly).collect()
 }
 
-/// Selects an item and makes its kind the subject, as a click in the outline does. Refused if the
-/// item is gone.
+/// Selects an item and makes its kind the subject, as a click in the outline does.
+///
+/// # Errors
+/// If the item is gone.
 pub fn pick(scene: &Scene, view: &View, id: ItemId) -> Result<Selection, Refusal> {
     let mut selection = select(scene, view, id)?;
     set_subject(&mut selection.view, subject_of(id));
     Ok(selection)
 }
 
-/// Selects the next item of the subject, cyclically (key Tab). Refused if the list has no other
-/// item.
+/// Selects the next item of the subject, cyclically (key Tab).
+///
+/// # Errors
+/// If the list has no other item.
 pub fn next(scene: &Scene, view: &View, phase: GesturePhase) -> Result<Selection, Refusal> {
     fn after<K: Copy + Eq + Hash, T, D>(list: &List<K, T, D>, id: Option<K>) -> Option<K> {
         list.after(id).filter(|next| Some(*next) != id)
@@ -149,8 +156,10 @@ pub const fn set_subject(view: &mut View, subject: Subject) {
     }
 }
 
-/// Sets the transformation (keys `t`, `r` and `s`). Refused if `to` is scaling and the subject is
-/// not objects.
+/// Sets the transformation (keys `t`, `r` and `s`).
+///
+/// # Errors
+/// If `to` is scaling and the subject is not objects.
 pub fn set_transformation(view: &mut View, to: Transformation) -> Result<(), Refusal> {
     if to == Transformation::Scaling && view.subject != Subject::Object {
         return Err(Refusal::OnlyObjectsScale);
@@ -159,8 +168,10 @@ pub fn set_transformation(view: &mut View, to: Transformation) -> Result<(), Ref
     Ok(())
 }
 
-/// Switches the observer between the selected camera and the selected object (key `C`). Refused if
-/// the scene has no object.
+/// Switches the observer between the selected camera and the selected object (key `C`).
+///
+/// # Errors
+/// If the scene has no object.
 pub fn toggle_observer(scene: &Scene, view: &mut View) -> Result<(), Refusal> {
     view.observer = match view.observer {
         Observer::Object => Observer::Camera,
@@ -172,8 +183,10 @@ pub fn toggle_observer(scene: &Scene, view: &mut View) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// Switches polygon mode on, from polygon 0, or off (key `o`). Refused if no object is selected, or
-/// it has no polygons.
+/// Switches polygon mode on, from polygon 0, or off (key `o`).
+///
+/// # Errors
+/// If no object is selected, or it has no polygons.
 pub fn toggle_polygons(scene: &Scene, view: &mut View) -> Result<(), Refusal> {
     view.polygons = match view.polygons {
         Some(_) => None,
@@ -185,8 +198,10 @@ pub fn toggle_polygons(scene: &Scene, view: &mut View) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// Selects the next polygon of the selected object, cyclically (key Enter). Refused outside polygon
-/// mode.
+/// Selects the next polygon of the selected object, cyclically (key Enter).
+///
+/// # Errors
+/// Outside polygon mode.
 pub fn next_polygon(scene: &Scene, view: &mut View) -> Result<(), Refusal> {
     let count = polygon_count(scene, view)?;
     let mode = view.polygons.as_mut().ok_or(Refusal::NotInPolygonMode)?;
@@ -194,8 +209,10 @@ pub fn next_polygon(scene: &Scene, view: &mut View) -> Result<(), Refusal> {
     Ok(())
 }
 
-/// Selects a polygon of the selected object, as a click on it does. Refused outside polygon mode,
-/// and if the object has no such polygon.
+/// Selects a polygon of the selected object, as a click on it does.
+///
+/// # Errors
+/// Outside polygon mode, and if the object has no such polygon.
 pub fn go_to_polygon(scene: &Scene, view: &mut View, polygon: u32) -> Result<(), Refusal> {
     let count = polygon_count(scene, view)?;
     let mode = view.polygons.as_mut().ok_or(Refusal::NotInPolygonMode)?;

@@ -175,8 +175,10 @@ pub(super) fn place_of(light: &Light) -> Result<LightPlace, Refusal> {
 }
 
 /// Returns the transformation of x, y and z for a light, if `chosen` is asked for. A sun can only
-/// be turned and a bulb only be moved, for any `chosen`. Refused if the light has neither a
-/// position nor a direction that can be set.
+/// be turned and a bulb only be moved, for any `chosen`.
+///
+/// # Errors
+/// If the light has neither a position nor a direction that can be set.
 pub fn transformation_of(light: &Light, chosen: Transformation) -> Result<Transformation, Refusal> {
     Ok(match place_of(light)? {
         LightPlace::Direction(_) => Transformation::Rotation,

@@ -40,7 +40,9 @@ impl Others {
 }
 
 /// Combines the commands that `act` returns for the selected item and for each of the others.
-/// Returns the refusal for the selected item, if all items refuse.
+///
+/// # Errors
+/// The refusal for the selected item, if all items refuse.
 pub fn each(
     scene: &Scene,
     view: &View,
@@ -83,8 +85,10 @@ fn as_if_selected(view: &View, id: ItemId) -> View {
     view
 }
 
-/// Shows or hides all of these items, whichever the selected one does. Refused if the selected item
-/// is gone.
+/// Shows or hides all of these items, whichever the selected one does.
+///
+/// # Errors
+/// If the selected item is gone.
 pub fn toggle_shown(scene: &Scene, view: &View, others: &[ItemId]) -> Change {
     let shown = |scene: &Scene, id| match id {
         ItemId::Object(id) => scene.objects.get(id).is_some_and(|object| object.visible),
@@ -100,8 +104,10 @@ pub fn toggle_shown(scene: &Scene, view: &View, others: &[ItemId]) -> Change {
     })
 }
 
-/// Locks or unlocks all of these items, whichever the selected one does. Refused if the selected
-/// item is gone.
+/// Locks or unlocks all of these items, whichever the selected one does.
+///
+/// # Errors
+/// If the selected item is gone.
 pub fn toggle_locked(scene: &Scene, view: &View, others: &[ItemId]) -> Change {
     let first = selection::selected(view).ok_or(Refusal::Gone)?;
     let before = scene.locked.contains(&first);

@@ -37,8 +37,10 @@ impl Sign {
     }
 }
 
-/// Transforms the selected item of the subject by one step (keys x, y and z). Refused if the item
-/// cannot be transformed in this way.
+/// Transforms the selected item of the subject by one step (keys x, y and z).
+///
+/// # Errors
+/// If the item cannot be transformed in this way.
 pub fn step(scene: &Scene, view: &View, axis: Axis, sign: Sign, phase: GesturePhase) -> Change {
     let along = || axis.unit() * sign.of(distance(scene, view, axis));
     let radians = sign.of(view.steps.rotation.to_radians());
@@ -93,7 +95,10 @@ pub fn distance(scene: &Scene, view: &View, axis: Axis) -> f64 {
 }
 
 /// Moves the selected item of the subject by `delta`: an object in the frame of the view, a camera
-/// in its frame, a light in the world's frame. Refused if the item cannot be moved.
+/// in its frame, a light in the world's frame.
+///
+/// # Errors
+/// If the item cannot be moved.
 pub fn translate(scene: &Scene, view: &View, delta: DVec3, phase: GesturePhase) -> Change {
     match view.subject {
         Subject::Object => transform(scene, view, DMat4::from_translation(delta), phase),
@@ -124,8 +129,10 @@ pub fn translate(scene: &Scene, view: &View, delta: DVec3, phase: GesturePhase) 
 
 /// Rotates the selected item of the subject about `axis` by the right-hand rule. An object turns in
 /// the frame of the view (about the origin in the global frame). A camera turns in its frame, about
-/// its eye in fly and about its centre in analysis. A light turns in the world's frame. Refused if
-/// the item cannot be rotated.
+/// its eye in fly and about its centre in analysis. A light turns in the world's frame.
+///
+/// # Errors
+/// If the item cannot be rotated.
 pub fn rotate(
     scene: &Scene,
     view: &View,
@@ -158,14 +165,19 @@ pub fn rotate(
     }
 }
 
-/// Scales the selected object uniformly by `factor`. Refused if the subject is not objects, or the
-/// object would become flat.
+/// Scales the selected object uniformly by `factor`.
+///
+/// # Errors
+/// If the subject is not objects, or the object would become flat.
 pub fn scale(scene: &Scene, view: &View, factor: f64, phase: GesturePhase) -> Change {
     stretch(scene, view, DVec3::splat(factor), phase)
 }
 
 /// Scales the selected object by a factor for each axis of the view's frame. Negative factors
-/// mirror the object. Refused if the subject is not objects, or the object would become flat.
+/// mirror the object.
+///
+/// # Errors
+/// If the subject is not objects, or the object would become flat.
 pub fn stretch(scene: &Scene, view: &View, factors: DVec3, phase: GesturePhase) -> Change {
     match view.subject {
         Subject::Object => transform(scene, view, DMat4::from_scale(factors), phase),
@@ -174,8 +186,10 @@ pub fn stretch(scene: &Scene, view: &View, factors: DVec3, phase: GesturePhase) 
     }
 }
 
-/// Undoes the last transformation of the selected item of the subject (key `u`). Refused if the
-/// item was never transformed.
+/// Undoes the last transformation of the selected item of the subject (key `u`).
+///
+/// # Errors
+/// If the item was never transformed.
 pub fn take_back(scene: &Scene, view: &View) -> Change {
     let nothing = Refusal::NothingToTakeBack;
     match view.subject {
@@ -207,8 +221,10 @@ pub fn take_back(scene: &Scene, view: &View) -> Change {
 }
 
 /// Switches the selected camera between fly and analysis (key `g`). Analysis aims it at the centre
-/// of the selected object. Returning to fly does not move it and pushes nothing. Refused if no
-/// object is selected.
+/// of the selected object. Returning to fly does not move it and pushes nothing.
+///
+/// # Errors
+/// If no object is selected.
 pub fn toggle_analysis(scene: &Scene, view: &View) -> Change {
     let pose = effective_pose(scene, view);
     match pose.mode {

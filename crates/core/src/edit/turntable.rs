@@ -21,7 +21,10 @@ pub enum Turn {
 }
 
 /// Returns the scene after `part` of a full turn, counter-clockwise seen from above. A part of 0
-/// returns the scene unchanged. Refused if nothing is visible.
+/// returns the scene unchanged.
+///
+/// # Errors
+/// If nothing is visible.
 pub fn turned(scene: &Scene, view: &View, turn: Turn, part: f64) -> Result<Scene, Refusal> {
     let visible = scene.objects.iter().filter(|(_, object)| object.visible);
     let ids: Vec<ObjectId> = visible.map(|(id, _)| id).collect();

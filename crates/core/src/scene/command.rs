@@ -114,8 +114,10 @@ pub enum CommandError {
 }
 
 impl Command {
-    /// Changes the scene, and returns the inverse command. Fails if the command does not fit the
-    /// scene. The scene is then unchanged.
+    /// Changes the scene, and returns the inverse command.
+    ///
+    /// # Errors
+    /// If the command does not fit the scene. The scene is then unchanged.
     pub fn apply(self, scene: &mut Scene) -> Result<Self, CommandError> {
         match self {
             Self::Insert { at, item } => insert(scene, at, item),

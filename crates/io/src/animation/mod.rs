@@ -35,8 +35,10 @@ pub enum AnimationFormat {
 }
 
 impl AnimationFormat {
-    /// Returns the format for a file name. Fails with the supported extensions if the name has
-    /// another one.
+    /// Returns the format for a file name.
+    ///
+    /// # Errors
+    /// The supported extensions, if the name has another one.
     pub fn of(path: &Path) -> Result<Self, String> {
         let Some(ending) = path.extension() else { return Ok(Self::Frames) };
         match ending.to_string_lossy().to_lowercase().as_str() {
@@ -130,7 +132,10 @@ impl std::fmt::Debug for AnimationWriter {
 
 impl AnimationWriter {
     /// Checks, before anything is drawn, whether an animation can be saved at `path` without
-    /// overwriting one of `sources`. Fails if it cannot.
+    /// overwriting one of `sources`.
+    ///
+    /// # Errors
+    /// If it cannot.
     pub fn check(path: &Path, sources: &Sources) -> Result<(), SaveError> {
         sources.spare(path)?;
         let fail = |reason: &str| SaveError::new(path, reason);
@@ -150,7 +155,10 @@ impl AnimationWriter {
         }
     }
 
-    /// Begins an animation. Fails if it cannot be saved there.
+    /// Begins an animation.
+    ///
+    /// # Errors
+    /// If it cannot be saved there.
     pub fn begin(path: &Path, animation: Animation, sources: &Sources) -> Result<Self, SaveError> {
         Self::check(path, sources)?;
         let fail = |reason: String| SaveError::new(path, reason);
@@ -183,7 +191,10 @@ impl AnimationWriter {
         &self.notes
     }
 
-    /// Adds a picture. Fails if it cannot be written.
+    /// Adds a picture.
+    ///
+    /// # Errors
+    /// If it cannot be written.
     pub fn push(&mut self, picture: &Picture) -> Result<(), SaveError> {
         let i = self.written;
         self.written += 1;
@@ -211,7 +222,10 @@ impl AnimationWriter {
         }
     }
 
-    /// Writes the file. Fails if it cannot be written; an existing file stays as it was.
+    /// Writes the file.
+    ///
+    /// # Errors
+    /// If it cannot be written; an existing file stays as it was.
     pub fn finish(self) -> Result<(), SaveError> {
         let Self { path, encoder, bytes, animation, .. } = self;
         let fail = |error: &dyn std::fmt::Display| SaveError::new(&path, error.to_string());

@@ -69,7 +69,10 @@ impl Format {
     }
 }
 
-/// Checks whether a scene can be exported to `path`. Fails if it cannot.
+/// Checks whether a scene can be exported to `path`.
+///
+/// # Errors
+/// If it cannot.
 pub fn check_export_target(path: &Path) -> Result<(), SaveError> {
     Format::of(path)?;
     check_target(path)
@@ -77,9 +80,12 @@ pub fn check_export_target(path: &Path) -> Result<(), SaveError> {
 
 /// Exports the scene in the format of the path's extension, at the time of the view. Companion
 /// files (materials, textures, the buffer of .gltf) are written next to it, under names that begin
-/// alike. Fails if a file cannot be written, is one of `sources`, or has the name of a companion
-/// file but was not written by an earlier export. Everything is checked before the first file is
-/// written, and the main file is written last.
+/// alike.
+///
+/// # Errors
+/// If a file cannot be written, is one of `sources`, or has the name of a companion file but was
+/// not written by an earlier export. Everything is checked before the first file is written, and
+/// the main file is written last.
 pub fn export(
     path: &Path,
     scene: &Scene,

@@ -58,8 +58,10 @@ impl Abandoned {
         &self.slot.work
     }
 
-    /// Moves the work aside; [`Discarded::all`](super::Discarded::all) finds it for 30 days. Fails
-    /// with the reason if it cannot be moved; it is then unchanged.
+    /// Moves the work aside; [`Discarded::all`](super::Discarded::all) finds it for 30 days.
+    ///
+    /// # Errors
+    /// The reason, if it cannot be moved; it is then unchanged.
     pub fn set_aside(&self) -> Result<(), String> {
         discarded::set_aside(&self.slot.work).map_err(|error| reason(&error))
     }

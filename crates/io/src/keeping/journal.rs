@@ -116,8 +116,10 @@ pub struct Journal {
 }
 
 impl Journal {
-    /// Starts saving the work of this program. Fails with the reason if the folder cannot be
-    /// written.
+    /// Starts saving the work of this program.
+    ///
+    /// # Errors
+    /// The reason, if the folder cannot be written.
     pub fn begin(folders: &OwnFolders) -> Result<Self, String> {
         let folder = &folders.state;
         made(folder)?;

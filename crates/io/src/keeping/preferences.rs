@@ -139,8 +139,10 @@ impl Preferences {
     }
 
     /// Writes the preferences atomically. Recent files that another program has added meanwhile
-    /// stay: these are in the file, but not `known` to this program. Fails with the reason if they
-    /// cannot be written.
+    /// stay: these are in the file, but not `known` to this program.
+    ///
+    /// # Errors
+    /// The reason, if they cannot be written.
     pub fn save(&self, folders: &OwnFolders, known: &[PathBuf]) -> Result<(), String> {
         made(&folders.config)?;
         let path = file(folders);

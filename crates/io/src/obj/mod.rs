@@ -65,8 +65,11 @@ pub struct Loaded {
 }
 
 /// Loads an OBJ file with its MTL files and textures, or an STL file. A file with the extension
-/// `.gz` is unpacked. Fails if the file cannot be read, is not such a file, has an unreadable
-/// number, or has only unusable faces; and if `progress` is cancelled.
+/// `.gz` is unpacked.
+///
+/// # Errors
+/// If the file cannot be read, is not such a file, has an unreadable number, or has only unusable
+/// faces; and if `progress` is cancelled.
 pub fn load(path: &Path, options: &LoadOptions, progress: &Progress) -> Result<Loaded, LoadError> {
     load_with(path, options, &mut Pictures::default(), progress)
 }
@@ -102,7 +105,10 @@ pub(super) fn load_with(
 }
 
 /// Parses the text of an OBJ file, or an STL file. MTL files are searched for in `folder`, if
-/// given. Fails like [`load`].
+/// given.
+///
+/// # Errors
+/// The same as [`load`].
 pub fn parse(
     bytes: &[u8],
     file: &str,

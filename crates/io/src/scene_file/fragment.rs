@@ -52,7 +52,10 @@ struct FileFragment {
     material: Option<MaterialChoice>,
 }
 
-/// Writes items of a scene as text. Fails with the reason if an item cannot be written.
+/// Writes items of a scene as text.
+///
+/// # Errors
+/// The reason, if an item cannot be written.
 pub fn items_to_text(scene: &Scene, items: &[ItemId]) -> Result<String, String> {
     let mut fragment = FileFragment { version: VERSION, ..FileFragment::default() };
     let nowhere = Path::new("");
@@ -70,7 +73,10 @@ pub fn items_to_text(scene: &Scene, items: &[ItemId]) -> Result<String, String> 
     text(&fragment)
 }
 
-/// Writes a material as text. Fails with the reason if it cannot be written.
+/// Writes a material as text.
+///
+/// # Errors
+/// The reason, if it cannot be written.
 pub fn material_to_text(material: &MaterialChoice) -> Result<String, String> {
     let material = Some(material.clone());
     text(&FileFragment { version: VERSION, material, ..FileFragment::default() })
@@ -82,8 +88,10 @@ fn text(fragment: &FileFragment) -> Result<String, String> {
     Ok(text + "\n")
 }
 
-/// Parses the items of a text. Models and textures that are not in `known` are loaded. Fails if the
-/// text is not a fragment, if its items are invalid, or if a model cannot be loaded; and if
+/// Parses the items of a text. Models and textures that are not in `known` are loaded.
+///
+/// # Errors
+/// If the text is not a fragment, if its items are invalid, or if a model cannot be loaded; and if
 /// `progress` is cancelled.
 pub fn items_of_text(
     text: &str,

@@ -29,8 +29,10 @@ struct Message {
 }
 
 /// Writes a scene with its view and settings for [`scene_of_message`]. Objects are left out if they
-/// equal the objects of `before`, the scene of the previous message. Fails with the reason if a
-/// model or a texture comes from no file, or its path is not UTF-8.
+/// equal the objects of `before`, the scene of the previous message.
+///
+/// # Errors
+/// The reason, if a model or a texture comes from no file, or its path is not UTF-8.
 pub fn scene_to_message(
     (scene, view, settings): (&Scene, &View, &Settings),
     before: Option<&Scene>,
@@ -46,8 +48,10 @@ pub fn scene_to_message(
 }
 
 /// Reads a scene of [`scene_to_message`]. `before` is the scene of the previous message. Models and
-/// textures that are not in `known` are loaded. Fails if the text is not such a message. Missing
-/// models become placeholders, as in a scene file.
+/// textures that are not in `known` are loaded.
+///
+/// # Errors
+/// If the text is not such a message. Missing models become placeholders, as in a scene file.
 pub fn scene_of_message(
     text: &str,
     before: Option<&Scene>,

@@ -85,14 +85,18 @@ pub enum SceneFileError {
     Model(#[from] LoadError),
 }
 
-/// Saves a scene; the previous file is kept, with `~` appended to its name. Fails if the file or a
-/// part of the scene cannot be written. An existing file is unchanged.
+/// Saves a scene; the previous file is kept, with `~` appended to its name.
+///
+/// # Errors
+/// If the file or a part of the scene cannot be written. An existing file is unchanged.
 pub fn save(path: &Path, scene: &Scene, view: &View, settings: &Settings) -> Result<(), SaveError> {
     save_with_window(path, scene, view, settings, &WindowState::DEFAULT).map(|_content| ())
 }
 
 /// Saves a scene like [`save()`], with the state of the window. Returns the content of the file.
-/// Fails like [`save()`].
+///
+/// # Errors
+/// The same as [`save()`].
 pub fn save_with_window(
     path: &Path,
     scene: &Scene,
@@ -106,8 +110,10 @@ pub fn save_with_window(
     Ok(Fingerprint::of(text.as_bytes()))
 }
 
-/// Returns the text that [`save()`] would write to `path`. Fails if a part of the scene cannot be
-/// written.
+/// Returns the text that [`save()`] would write to `path`.
+///
+/// # Errors
+/// If a part of the scene cannot be written.
 pub fn to_text(
     path: &Path,
     scene: &Scene,
@@ -138,7 +144,10 @@ pub(crate) fn text_with_window(
 
 /// Opens a scene file. Models and textures that are missing or cannot be read become placeholders,
 /// see [`Model::is_placeholder`](marraztu_core::scene::Model::is_placeholder), with one finding
-/// each. Fails if the file cannot be read or parsed, and if `progress` is cancelled.
+/// each.
+///
+/// # Errors
+/// If the file cannot be read or parsed, and if `progress` is cancelled.
 pub fn open(path: &Path, progress: &Progress) -> Result<Opened, SceneFileError> {
     let name = shown(path);
     if let Some(text) = examples::scene_text(path) {

@@ -155,8 +155,10 @@ impl SuiteScene {
     }
 }
 
-/// Measures scenes of the suite one after the other. `tell` is called after each. Fails like
-/// [`super::sweep::sweep`].
+/// Measures scenes of the suite one after the other. `tell` is called after each.
+///
+/// # Errors
+/// The same as [`super::sweep::sweep`].
 pub fn run(
     scenes: &[&'static SuiteScene],
     detail: &SuiteDetail,

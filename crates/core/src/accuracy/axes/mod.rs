@@ -164,8 +164,10 @@ impl Choice {
         Self { slower_because: Some(reason), ..self }
     }
 
-    /// Whether it differs from the other choices for a scene in a view with these settings. The
-    /// error is the reason why it does not.
+    /// Whether it differs from the other choices for a scene in a view with these settings.
+    ///
+    /// # Errors
+    /// The reason why it does not.
     pub fn is_of_its_own(
         &self,
         scene: &Scene,

@@ -13,8 +13,10 @@ use crate::scene::{
 };
 
 impl Mesh {
-    /// Checks the parts, triangulates the polygons and computes their normals. Fails if a number is
-    /// not finite, an index is out of range, or a list has the wrong length.
+    /// Checks the parts, triangulates the polygons and computes their normals.
+    ///
+    /// # Errors
+    /// If a number is not finite, an index is out of range, or a list has the wrong length.
     pub fn new(mut source: MeshSource) -> Result<Self, MeshError> {
         let corners = std::mem::take(&mut source.corners);
         let list = |some: fn(&SourceCorner) -> u32| -> Vec<u32> {
@@ -33,7 +35,10 @@ impl Mesh {
     }
 
     /// Builds a mesh like [`Self::new`], from corners in lists, which take less memory. The corners
-    /// of `source` are ignored. Fails like [`Self::new`].
+    /// of `source` are ignored.
+    ///
+    /// # Errors
+    /// The same as [`Self::new`].
     pub fn from_lists(source: MeshSource, corners: CornerLists) -> Result<Self, MeshError> {
         check(&source, &corners)?;
         let starts = running_sum(&source.arities);
