@@ -10,11 +10,10 @@
 use glam::{DMat3, DMat4, DVec3};
 
 use super::angles;
-use super::set_transform::{self, LightPlace};
 use super::transform::effective_pose;
-use super::{Change, GesturePhase, Refusal};
+use super::{Change, GesturePhase, Refusal, set_transform};
 use crate::base::math::{self, Axis};
-use crate::scene::{Aim, CameraId, CameraMode, LightId, ObjectId, Pose, Scene, View};
+use crate::scene::{CameraId, CameraMode, LightId, LightOrigin, ObjectId, Pose, Scene, View};
 
 /// Returns the position of an object's origin.
 pub fn translation(placement: &DMat4) -> DVec3 {
@@ -217,10 +216,7 @@ pub fn camera(scene: &Scene, id: CameraId, eye: DVec3, axes: DMat3, phase: Gestu
 /// If the light's position cannot be set, or the numbers are not finite.
 pub fn light_position(scene: &Scene, id: LightId, to: DVec3, phase: GesturePhase) -> Change {
     let light = scene.lights.get(id).ok_or(Refusal::Gone)?;
-    let place = match set_transform::place_of(light)? {
-        LightPlace::Aim(aim) => LightPlace::Aim(Aim { position: to, ..aim }),
-        LightPlace::Direction(_) | LightPlace::Position(_) => LightPlace::Position(to),
-    };
+    let place = LightOrigin { position: Some(to), ..set_transform::place_of(light)? };
     set_transform::light(scene, id, place, phase)
 }
 
@@ -233,10 +229,7 @@ pub fn light_direction(scene: &Scene, id: LightId, to: DVec3, phase: GesturePhas
     if to == DVec3::ZERO {
         return Err(Refusal::NoDirection);
     }
-    let place = match set_transform::place_of(light)? {
-        LightPlace::Aim(aim) => LightPlace::Aim(Aim { direction: to, ..aim }),
-        LightPlace::Direction(_) | LightPlace::Position(_) => LightPlace::Direction(to),
-    };
+    let place = LightOrigin { direction: Some(to), ..set_transform::place_of(light)? };
     set_transform::light(scene, id, place, phase)
 }
 

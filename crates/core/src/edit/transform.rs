@@ -9,13 +9,13 @@
 
 use glam::{DMat3, DMat4, DVec3};
 
-use super::set_transform::{self, LightPlace};
+use super::set_transform;
 pub use super::set_transform::{aimed_again, transformation_of};
 use super::{Change, GesturePhase, Refusal, steps};
 use crate::base::math::{self, Axis};
 use crate::scene::{
-    Aim, AnchorMut, CameraMode, Command, Frame, Item, ItemId, Orbit, Pose, Scene, SpotOwner,
-    Subject, Transformation, View,
+    AnchorMut, CameraMode, Command, Frame, Item, ItemId, Orbit, Pose, Scene, SpotOwner, Subject,
+    Transformation, View,
 };
 
 /// The direction of a step along or about an axis.
@@ -62,15 +62,11 @@ pub fn step(scene: &Scene, view: &View, axis: Axis, sign: Sign, phase: GesturePh
             (Axis::Z, Transformation::Rotation) => rotate(scene, view, DVec3::Z, radians, phase),
         },
         Subject::Light => {
-            match set_transform::place_of(set_transform::selected_light(scene, view)?.1)? {
-                // A sun can only be turned and a bulb only be moved, for any transformation.
-                LightPlace::Direction(_) => rotate(scene, view, axis.unit(), radians, phase),
-                LightPlace::Position(_) => translate(scene, view, along(), phase),
-                LightPlace::Aim(_) => match view.transformation {
-                    Transformation::Translation => translate(scene, view, along(), phase),
-                    Transformation::Rotation => rotate(scene, view, axis.unit(), radians, phase),
-                    Transformation::Scaling => Err(Refusal::LightScaled),
-                },
+            let (_, light) = set_transform::selected_light(scene, view)?;
+            match transformation_of(light, view.transformation)? {
+                Transformation::Translation => translate(scene, view, along(), phase),
+                Transformation::Rotation => rotate(scene, view, axis.unit(), radians, phase),
+                Transformation::Scaling => Err(Refusal::LightScaled),
             }
         }
     }
@@ -115,13 +111,8 @@ pub fn translate(scene: &Scene, view: &View, delta: DVec3, phase: GesturePhase) 
             let delta = light.kind.orbit().map_or(delta, |orbit| {
                 Orbit { speed: -orbit.speed, ..*orbit }.at(delta, view.time)
             });
-            let place = match set_transform::place_of(light)? {
-                LightPlace::Direction(_) => return Err(Refusal::SunMoved),
-                LightPlace::Position(position) => LightPlace::Position(position + delta),
-                LightPlace::Aim(aim) => {
-                    LightPlace::Aim(Aim { position: aim.position + delta, ..aim })
-                }
-            };
+            let mut place = set_transform::place_of(light)?;
+            place.position = Some(place.position.ok_or(Refusal::SunMoved)? + delta);
             set_transform::light(scene, id, place, phase)
         }
     }
@@ -153,13 +144,9 @@ pub fn rotate(
         }
         Subject::Light => {
             let (id, light) = set_transform::selected_light(scene, view)?;
-            let place = match set_transform::place_of(light)? {
-                LightPlace::Direction(direction) => LightPlace::Direction(turn(axis)? * direction),
-                LightPlace::Position(_) => return Err(Refusal::BulbTurned),
-                LightPlace::Aim(aim) => {
-                    LightPlace::Aim(Aim { direction: turn(axis)? * aim.direction, ..aim })
-                }
-            };
+            let mut place = set_transform::place_of(light)?;
+            let direction = place.direction.ok_or(Refusal::BulbTurned)?;
+            place.direction = Some(turn(axis)? * direction);
             set_transform::light(scene, id, place, phase)
         }
     }
