@@ -94,7 +94,7 @@ pub(super) fn compare(arguments: &Compare) -> Result<(), Failure> {
             let [a, b] = [(a, &first), (b, &second)]
                 .map(|(deep, picture)| deep.unwrap_or_else(|| widened(picture)));
             let perceived = difference(&first, &second);
-            Difference { flip: perceived.flip, ..differences(&a, &b) }
+            Difference { flip: perceived.flip, ..differences(&a, &b, u16::MAX) }
         }
     };
     let rows = difference.rows(sizes[0].area());
@@ -147,22 +147,22 @@ fn incomparable(reason: &str) -> Failure {
 
 /// Measures the differences of two pictures of one size.
 fn difference(a: &Picture, b: &Picture) -> Difference {
-    let measured = differences(a.pixels(), b.pixels());
+    let measured = differences(a.pixels(), b.pixels(), 255);
     if measured.largest == 0 {
         return measured;
     }
     Difference { flip: Perceived::new(a).difference(&Perceived::new(b)), ..measured }
 }
 
-/// Measures the differences of pixels, except for the perceived one.
+/// Measures the differences of pixels, except for the perceived one. `opaque` is the largest alpha.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^52 bytes")]
-fn differences<T: Copy + Into<u16> + Bounded>(a: &[[T; 4]], b: &[[T; 4]]) -> Difference {
+fn differences<T: Copy + Into<u16>>(a: &[[T; 4]], b: &[[T; 4]], opaque: u16) -> Difference {
     let (mut largest, mut pixels, mut squares, mut has_alpha) = (0, 0, 0_u64, false);
     for (a, b) in a.iter().zip(b) {
         let [a, b] = [a, b].map(|pixel| pixel.map(Into::<u16>::into));
         let steps: [u16; 4] = std::array::from_fn(|i| a[i].abs_diff(b[i]));
         pixels += usize::from(steps != [0; 4]);
-        has_alpha |= a[3].min(b[3]) < T::MOST;
+        has_alpha |= a[3].min(b[3]) < opaque;
         for step in steps {
             largest = largest.max(step);
             squares += u64::from(step) * u64::from(step);
@@ -172,20 +172,6 @@ fn differences<T: Copy + Into<u16> + Bounded>(a: &[[T; 4]], b: &[[T; 4]]) -> Dif
     let channels = if has_alpha { 4 } else { 3 } * a.len().max(1);
     let rmse = libm::sqrt(squares as f64 / channels as f64);
     Difference { largest, pixels, rmse, flip: 0.0 }
-}
-
-/// A channel of a pixel.
-trait Bounded {
-    /// The largest value.
-    const MOST: u16;
-}
-
-impl Bounded for u8 {
-    const MOST: u16 = 255;
-}
-
-impl Bounded for u16 {
-    const MOST: Self = Self::MAX;
 }
 
 /// Returns the pixels with 16 bits per channel.
