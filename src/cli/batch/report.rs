@@ -98,15 +98,16 @@ impl Line {
             Ok(drawn) => (drawn, Status::Done, None),
             Err(fault) => (&none, fault.status(), Some(fault.reason())),
         };
+        let first = drawn.files.first();
         Self {
             index: job.index,
             input: shown(&job.row.file),
             in_sha256: outcome.in_sha256.clone(),
             view: job.camera().name.clone(),
             out: shown(job.out()),
-            out_sha256: drawn.first.sha256.clone(),
-            bytes: (status == Status::Done).then_some(drawn.first.bytes),
-            layers: drawn.layers.clone(),
+            out_sha256: first.and_then(|first| first.sha256.clone()),
+            bytes: first.map(|first| first.bytes),
+            layers: drawn.files.iter().skip(1).cloned().collect(),
             status,
             findings: drawn.findings.clone(),
             error,
