@@ -15,7 +15,6 @@ use super::candidates::Group;
 use super::error::{Measure, Region};
 use super::front::{Point, fastest_within, front, most_exact_within};
 use super::sweep::{Findings, Measured, Row, Verdict};
-use marraztu_core::accuracy::{Axis, Choice};
 
 /// The results of a sweep, with the options of the report.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -134,22 +133,6 @@ impl Report {
     /// Returns the index of the point with the current settings.
     pub fn current(&self) -> Option<usize> {
         self.findings.points.iter().position(|point| point.settings == self.findings.current)
-    }
-
-    /// Summarises the figures in sentences.
-    pub fn verdict(&self) -> Vec<String> {
-        verdict::verdict(self)
-    }
-
-    /// Summarises the figures on one axis in a paragraph.
-    pub fn verdict_on(&self, axis: &Axis) -> String {
-        verdict::verdict_on(self, axis)
-    }
-
-    /// Describes a choice of an axis in a line: its time and error against the default's. `None` if
-    /// the choice was not measured.
-    pub fn verdict_on_choice(&self, axis: &Axis, choice: &Choice) -> Option<String> {
-        verdict::verdict_on_choice(self, axis, choice)
     }
 
     /// Formats the report as JSON.
