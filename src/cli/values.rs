@@ -1,5 +1,6 @@
 //! Parses option values.
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 use clap::builder::{PathBufValueParser, TypedValueParser};
@@ -18,6 +19,16 @@ pub(crate) fn is_standard(file: &Path) -> bool {
 /// Returns whether a file name refers to the terminal.
 pub(crate) fn is_terminal(file: &Path) -> bool {
     file == Path::new("terminal")
+}
+
+/// Returns the name of a file without its extension; `.obj.gz` is one extension.
+pub(super) fn stem(file: &Path) -> OsString {
+    let name = Path::new(file.file_name().unwrap_or_default());
+    let inner = match name.extension() {
+        Some(ending) if ending.eq_ignore_ascii_case("gz") => name.with_extension(""),
+        _ => name.to_owned(),
+    };
+    inner.file_stem().unwrap_or_default().to_owned()
 }
 
 /// Returns a parser of the names of pictures, which checks their extensions.

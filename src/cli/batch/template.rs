@@ -2,6 +2,8 @@
 
 use std::path::{Component, Path, PathBuf};
 
+use crate::cli::values;
+
 /// The largest width of a number.
 const MOST_WIDTH: usize = 20;
 
@@ -134,12 +136,7 @@ fn name(file: &Path) -> String {
 
 /// Returns the name of a model without extension; `.obj.gz` is one extension.
 pub(super) fn stem(file: &Path) -> String {
-    let name = Path::new(file.file_name().unwrap_or_default());
-    let inner = match name.extension() {
-        Some(ending) if ending.eq_ignore_ascii_case("gz") => name.with_extension(""),
-        _ => name.to_owned(),
-    };
-    inner.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    values::stem(file).to_string_lossy().into_owned()
 }
 
 /// Returns the folder of a model within the folder of the output: without a root, and without
