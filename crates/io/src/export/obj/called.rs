@@ -12,7 +12,7 @@ use crate::export::names::{self, on_one_line};
 use marraztu_core::scene::{MaterialChoice, Object, Surface};
 
 /// The names in use, and the statements in effect.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Names {
     /// Whether the file has only one object of the scene, which then needs no name.
     alone: bool,
@@ -46,13 +46,7 @@ struct OfObject {
 impl Names {
     /// Creates the names for a file with this number of objects of the scene.
     pub(super) fn new(objects: usize) -> Self {
-        Self {
-            alone: objects == 1,
-            objects: names::Names::default(),
-            groups: names::Names::default(),
-            now: Called::default(),
-            of_object: OfObject::default(),
-        }
+        Self { alone: objects == 1, ..Self::default() }
     }
 
     /// Begins an object of the scene. A name from the user replaces the name of the file's only
