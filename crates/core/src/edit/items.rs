@@ -8,9 +8,9 @@ use super::names::Names;
 use super::{Change, Refusal, set_transform};
 use crate::base::Shared;
 use crate::scene::{
-    AnchorMut, Camera, CameraId, Command, CommandError, Crease, Item, ItemId, Lens, Light, LightId,
-    LightKind, MaterialChoice, Model, Object, ObjectId, Pose, Scene, Shape, Smoothing, SpotOwner,
-    Tracked,
+    AnchorMut, Camera, CameraId, CameraMode, Command, CommandError, Crease, Item, ItemId, Lens,
+    Light, LightId, LightKind, MaterialChoice, Model, Object, ObjectId, Pose, Scene, Shape,
+    Smoothing, SpotOwner, Tracked,
 };
 
 /// The largest number of parts to split at once, which keeps the outline readable.
@@ -284,12 +284,8 @@ pub fn change_object(scene: &Scene, id: ObjectId, change: impl FnOnce(&mut Objec
 /// Changes properties of all objects in one step, except their placements and spins.
 #[must_use]
 pub fn change_all_objects(scene: &Scene, change: impl Fn(&mut Object)) -> Command {
-    let changed = |(id, object): (ObjectId, &Object)| {
-        let mut object = object.clone();
-        change(&mut object);
-        Command::Replace(Item::Object(id, Box::new(object)))
-    };
-    Command::Batch(scene.objects.iter().map(changed).collect())
+    let changed = |id| change_object(scene, id, &change).ok();
+    Command::Batch(scene.objects.ids().filter_map(changed).collect())
 }
 
 /// Changes properties of a camera, except its pose.
@@ -300,6 +296,13 @@ pub fn change_camera(scene: &Scene, id: CameraId, change: impl FnOnce(&mut Camer
     let mut camera = scene.cameras.get(id).ok_or(Refusal::Gone)?.clone();
     change(&mut camera);
     Ok(Command::Replace(Item::Camera(id, Box::new(camera))))
+}
+
+/// Sets whether a camera flies or orbits an object, without turning it.
+pub(super) fn set_mode(scene: &Scene, id: CameraId, mode: CameraMode) -> Change {
+    change_camera(scene, id, |camera| {
+        camera.pose = camera.pose.replaced(Pose { mode, ..*camera.pose.now() });
+    })
 }
 
 /// Changes properties of a light, except its position and direction.
@@ -348,7 +351,8 @@ fn inserted(scene: &Scene, at: usize, item: Item) -> Command {
     Command::Batch(vec![Command::NextId(scene.next_id + 1), Command::Insert { at, item }])
 }
 
-fn one_or_batch(mut commands: Vec<Command>) -> Command {
+/// Returns a single command itself, and a batch of several.
+pub(super) fn one_or_batch(mut commands: Vec<Command>) -> Command {
     if commands.len() == 1 { commands.remove(0) } else { Command::Batch(commands) }
 }
 

@@ -5,6 +5,7 @@
 
 use glam::{DMat3, DMat4, DVec3};
 
+use super::items::one_or_batch;
 use super::{Change, GesturePhase, Refusal};
 use crate::base::math;
 use crate::scene::{
@@ -78,7 +79,7 @@ pub(super) fn object_placed(
             commands.push(Command::Replace(Item::Camera(camera_id, Box::new(camera))));
         }
     }
-    Ok(if commands.len() == 1 { commands.remove(0) } else { Command::Batch(commands) })
+    Ok(one_or_batch(commands))
 }
 
 /// Gives the camera `id` another pose, with its axes made orthonormal.
