@@ -229,7 +229,7 @@ impl SoundFaces {
         let kinds = [FindingKind::UvMixed, FindingKind::NormalMixed];
         for (without, kind) in without.into_iter().zip(kinds) {
             if without.corners < all.corners.positions.len() {
-                findings.note_all(kind, without.faces, without.first);
+                findings.note_all(kind, without.faces, Some(without.first));
             }
         }
         all
