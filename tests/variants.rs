@@ -15,7 +15,7 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{
     Light, LightId, LightKind, Material, MaterialChoice, MeshSource, Model, NONE, Object, ObjectId,
-    Part, Scene, Sides, SourceCorner, Surface, Texture, View, Wrap,
+    Scene, Sides, SourceCorner, Surface, Texture, View, Wrap,
 };
 use marraztu_io::{lesson_on, lesson_scene};
 use marraztu_render::Renderer;
@@ -77,11 +77,7 @@ fn chart(side: u32) -> Shared<Model> {
                 .map(|[x, y]| [2.0 * x - 1.0, 2.0 * y - 1.0, 0.0])
                 .collect(),
             uvs: (0..row * row).map(at).collect(),
-            corners: (0..side * side).flat_map(square).map(corner).collect(),
-            arities: vec![4; count],
-            polygon_parts: vec![0; count],
-            parts: vec![Part { name: "chart".to_owned(), material: None }],
-            ..MeshSource::default()
+            ..MeshSource::of_polygons((0..side * side).flat_map(square).map(corner), vec![4; count])
         },
     )
 }

@@ -10,28 +10,18 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{
     Camera, CameraId, Command, Item, Lens, Light, LightId, MaterialChoice, Mesh, MeshSource, Model,
-    NONE, Object, ObjectId, Part, Pose, PresetId, Scene, SourceCorner, Tracked, View,
+    Object, ObjectId, Part, Pose, PresetId, Scene, SourceCorner, Tracked, View,
 };
 use marraztu_render::Renderer;
 use marraztu_render::plan_frame;
 
 /// Builds a model from polygons of vertex indices.
 pub(crate) fn model(name: &str, positions: &[[f32; 3]], polygons: &[&[u32]]) -> Shared<Model> {
-    model_of(
-        name,
-        MeshSource {
-            positions: positions.to_vec(),
-            corners: polygons
-                .iter()
-                .flat_map(|polygon| polygon.iter())
-                .map(|&position| SourceCorner { position, uv: NONE, normal: NONE })
-                .collect(),
-            arities: polygons.iter().map(|polygon| polygon.len() as u32).collect(),
-            polygon_parts: vec![0; polygons.len()],
-            parts: vec![Part { name: name.to_owned(), material: None }],
-            ..MeshSource::default()
-        },
-    )
+    let corners = polygons.iter().copied().flatten().copied().map(SourceCorner::bare);
+    let arities = polygons.iter().map(|polygon| polygon.len() as u32).collect();
+    let parts = vec![Part { name: name.to_owned(), material: None }];
+    let positions = positions.to_vec();
+    model_of(name, MeshSource { positions, parts, ..MeshSource::of_polygons(corners, arities) })
 }
 
 /// Builds a model from a mesh source.

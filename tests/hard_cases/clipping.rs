@@ -8,8 +8,7 @@ use marraztu_core::base::color::Color;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::base::rng::Rng;
 use marraztu_core::scene::{
-    Fill, List, MeshSource, Object, ObjectId, Part, Pose, Sides, SourceCorner, Surface, Tracked,
-    View,
+    Fill, List, MeshSource, Object, ObjectId, Pose, Sides, SourceCorner, Surface, Tracked, View,
 };
 use marraztu_lab::pictures::flat::{self, Flat};
 use marraztu_render::Renderer;
@@ -525,13 +524,14 @@ pub(super) fn textured(
     let source = MeshSource {
         positions: corners.map(|corner| corner.as_vec3().to_array()).to_vec(),
         uvs: u.map(|u| [u, 0.5]).to_vec(),
-        corners: [0, 1, 2]
-            .map(|i| SourceCorner { position: i, uv: i, normal: marraztu_core::scene::NONE })
-            .to_vec(),
-        arities: vec![3],
-        polygon_parts: vec![0],
-        parts: vec![Part { name: "triangle".to_owned(), material: None }],
-        ..MeshSource::default()
+        ..MeshSource::of_polygons(
+            [0, 1, 2].map(|i| SourceCorner {
+                position: i,
+                uv: i,
+                normal: marraztu_core::scene::NONE,
+            }),
+            vec![3],
+        )
     };
     let (mut scene, view) = scene(&[(model_of("triangle", source), DMat4::IDENTITY)]);
     edit(&mut scene, ObjectId(10), |object| {

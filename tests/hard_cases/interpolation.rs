@@ -6,8 +6,7 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::base::rng::Rng;
 use marraztu_core::scene::{
-    Material, MaterialChoice, MeshSource, NONE, ObjectId, Part, SourceCorner, Surface, Texture,
-    View, Wrap,
+    Material, MaterialChoice, MeshSource, ObjectId, SourceCorner, Surface, Texture, View, Wrap,
 };
 use marraztu_lab::pictures::flat::{self, Flat};
 use marraztu_render::Renderer;
@@ -125,11 +124,7 @@ fn painted(corners: [Snapped; 3], colors: [[f32; 3]; 3], side: usize) -> Picture
     let source = MeshSource {
         positions: corners.map(|c| flat::place(c, 512.0, side).as_vec3().to_array()).to_vec(),
         colors: colors.to_vec(),
-        corners: [0, 1, 2].map(|i| SourceCorner { position: i, uv: NONE, normal: NONE }).to_vec(),
-        arities: vec![3],
-        polygon_parts: vec![0],
-        parts: vec![Part { name: "triangle".to_owned(), material: None }],
-        ..MeshSource::default()
+        ..MeshSource::of_polygons([0, 1, 2].map(SourceCorner::bare), vec![3])
     };
     edit(&mut scene, ObjectId(1), |object| object.model = model_of("painted", source));
     flat::draw(&(scene, view), side, &mut Renderer::default())
@@ -313,13 +308,10 @@ fn case_41_a_quad_is_cut_from_its_first_corner_to_its_third() {
         let source = MeshSource {
             positions: corners.map(|(x, y)| [x, y, 0.0]).to_vec(),
             colors: vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
-            corners: (0..4)
-                .map(|i| SourceCorner { position: (i + turned as u32) % 4, uv: NONE, normal: NONE })
-                .collect(),
-            arities: vec![4],
-            polygon_parts: vec![0],
-            parts: vec![Part { name: "quad".to_owned(), material: None }],
-            ..MeshSource::default()
+            ..MeshSource::of_polygons(
+                (0..4).map(|i| SourceCorner::bare((i + turned as u32) % 4)),
+                vec![4],
+            )
         };
         let (mut scene, view) = scene(&[(model_of("quad", source), DMat4::IDENTITY)]);
         edit(&mut scene, ObjectId(10), |object| object.surface = Surface::Texture);

@@ -8,7 +8,7 @@ use marraztu_core::base::rng::Rng;
 use marraztu_core::edit::{GesturePhase, placement};
 use marraztu_core::scene::{
     Aim, Command, ItemId, Light, LightId, LightKind, Material, MaterialChoice, MeshSource, NONE,
-    ObjectId, Orbit, Part, Scene, SourceCorner, SpotOwner, Tracked, View,
+    ObjectId, Orbit, Scene, SourceCorner, SpotOwner, Tracked, View,
 };
 use marraztu_lab::instructions::levels;
 use marraztu_render::Renderer;
@@ -87,11 +87,10 @@ impl Bent {
         let source = MeshSource {
             positions: self.corners.map(|c| c.as_vec3().to_array()).to_vec(),
             normals: self.normals.map(|n| n.as_vec3().to_array()).to_vec(),
-            corners: [0, 1, 2].map(|i| SourceCorner { position: i, uv: NONE, normal: i }).to_vec(),
-            arities: vec![3],
-            polygon_parts: vec![0],
-            parts: vec![Part { name: "bent".to_owned(), material: None }],
-            ..MeshSource::default()
+            ..MeshSource::of_polygons(
+                [0, 1, 2].map(|i| SourceCorner { position: i, uv: NONE, normal: i }),
+                vec![3],
+            )
         };
         let (mut scene, view) = scene(&[(model_of("bent", source), DMat4::IDENTITY)]);
         edit(&mut scene, ObjectId(10), |object| object.material = stuff(matter));
@@ -597,11 +596,10 @@ fn case_51_light_is_held_to_full_once_and_after_the_texture() {
     let source = MeshSource {
         positions: vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]],
         uvs: vec![[0.502, 0.5]],
-        corners: [0, 1, 2].map(|i| SourceCorner { position: i, uv: 0, normal: NONE }).to_vec(),
-        arities: vec![3],
-        polygon_parts: vec![0],
-        parts: vec![Part { name: "half".to_owned(), material: None }],
-        ..MeshSource::default()
+        ..MeshSource::of_polygons(
+            [0, 1, 2].map(|i| SourceCorner { position: i, uv: 0, normal: NONE }),
+            vec![3],
+        )
     };
     edit(&mut scene, ObjectId(10), |object| {
         object.material = stuff(&matter);

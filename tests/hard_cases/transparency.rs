@@ -7,7 +7,7 @@ use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::base::rng::Rng;
 use marraztu_core::scene::{
     Lens, Light, LightId, LightKind, List, Material, MaterialChoice, MeshSource, NONE, ObjectId,
-    Part, Scene, Sides, SourceCorner, Surface, Texture, View, Wrap,
+    Scene, Sides, SourceCorner, Surface, Texture, View, Wrap,
 };
 
 use super::common::{draw, edit, model_of, scene};
@@ -45,13 +45,10 @@ fn stage(sheets: &[(u32, Sheet)]) -> (Scene, View) {
             let source = MeshSource {
                 positions: sheet.corners.map(|corner| corner.as_vec3().to_array()).to_vec(),
                 uvs: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
-                corners: [0, 1, 2, 0, 2, 3]
-                    .map(|i| SourceCorner { position: i, uv: i, normal: NONE })
-                    .to_vec(),
-                arities: vec![3, 3],
-                polygon_parts: vec![0, 0],
-                parts: vec![Part { name: "sheet".to_owned(), material: None }],
-                ..MeshSource::default()
+                ..MeshSource::of_polygons(
+                    [0, 1, 2, 0, 2, 3].map(|i| SourceCorner { position: i, uv: i, normal: NONE }),
+                    vec![3, 3],
+                )
             };
             (model_of("sheet", source), DMat4::IDENTITY)
         })

@@ -24,19 +24,10 @@ pub(crate) fn shapes() -> &'static [Shared<Model>] {
     })
 }
 
-fn corner(position: u32) -> SourceCorner {
-    SourceCorner { position, uv: NONE, normal: NONE }
-}
-
-fn model(name: &str, source: MeshSource, materials: Vec<FileMaterial>) -> Shared<Model> {
-    let source = MeshSource {
-        parts: if source.parts.is_empty() {
-            vec![Part { name: name.to_owned(), material: None }]
-        } else {
-            source.parts
-        },
-        ..source
-    };
+fn model(name: &str, mut source: MeshSource, materials: Vec<FileMaterial>) -> Shared<Model> {
+    for part in source.parts.iter_mut().filter(|part| part.name.is_empty()) {
+        name.clone_into(&mut part.name);
+    }
     let mesh = Mesh::new(source).expect("these shapes are meshes");
     Shared::new(Model { materials, ..Model::of_mesh(name, mesh) })
 }
@@ -44,10 +35,7 @@ fn model(name: &str, source: MeshSource, materials: Vec<FileMaterial>) -> Shared
 fn triangle() -> Shared<Model> {
     let source = MeshSource {
         positions: vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]],
-        corners: [0, 1, 2].map(corner).to_vec(),
-        arities: vec![3],
-        polygon_parts: vec![0],
-        ..MeshSource::default()
+        ..MeshSource::of_polygons([0, 1, 2].map(SourceCorner::bare), vec![3])
     };
     model("triangle", source, Vec::new())
 }
@@ -58,10 +46,7 @@ fn square_source() -> MeshSource {
     MeshSource {
         positions: vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]],
         uvs: vec![[0.0, 0.0], [1.5, 0.0], [1.5, 1.0], [0.0, 1.0]],
-        corners: [0, 1, 2, 3].map(textured).to_vec(),
-        arities: vec![4],
-        polygon_parts: vec![0],
-        ..MeshSource::default()
+        ..MeshSource::of_polygons([0, 1, 2, 3].map(textured), vec![4])
     }
 }
 
@@ -73,12 +58,11 @@ fn cube() -> Shared<Model> {
     let side = |i: u32, bit: u32| if i & bit == 0 { -1.0 } else { 1.0 };
     let source = MeshSource {
         positions: (0..8).map(|i| [1, 2, 4].map(|bit| side(i, bit))).collect(),
-        corners: [0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5]
-            .map(corner)
-            .to_vec(),
-        arities: vec![4; 6],
-        polygon_parts: vec![0; 6],
-        ..MeshSource::default()
+        ..MeshSource::of_polygons(
+            [0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5]
+                .map(SourceCorner::bare),
+            vec![4; 6],
+        )
     };
     model("cube", source, Vec::new())
 }
@@ -98,21 +82,17 @@ fn ball(rings: u32) -> Shared<Model> {
     let at = |ring: u32, segment: u32| 2 + (ring - 1) * segments + segment % segments;
     let mut corners = Vec::new();
     for segment in 0..segments {
-        corners.extend([0, at(1, segment), at(1, segment + 1)].map(corner));
-        corners.extend([1, at(rings - 1, segment + 1), at(rings - 1, segment)].map(corner));
+        corners.extend([0, at(1, segment), at(1, segment + 1)].map(SourceCorner::bare));
+        corners.extend(
+            [1, at(rings - 1, segment + 1), at(rings - 1, segment)].map(SourceCorner::bare),
+        );
         for ring in 1..rings - 1 {
             let (a, b, c) = (at(ring, segment), at(ring + 1, segment), at(ring + 1, segment + 1));
-            corners.extend([a, b, c, a, c, at(ring, segment + 1)].map(corner));
+            corners.extend([a, b, c, a, c, at(ring, segment + 1)].map(SourceCorner::bare));
         }
     }
     let triangles = corners.len() / 3;
-    let source = MeshSource {
-        positions,
-        corners,
-        arities: vec![3; triangles],
-        polygon_parts: vec![0; triangles],
-        ..MeshSource::default()
-    };
+    let source = MeshSource { positions, ..MeshSource::of_polygons(corners, vec![3; triangles]) };
     model("ball", source, Vec::new())
 }
 
@@ -163,10 +143,10 @@ fn colored() -> Shared<Model> {
     let source = MeshSource {
         positions: vec![[1.0, 1.0, 1.0], [-1.0, -1.0, 1.0], [-1.0, 1.0, -1.0], [1.0, -1.0, -1.0]],
         colors: vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0; 3]],
-        corners: [0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3].map(corner).to_vec(),
-        arities: vec![3; 4],
-        polygon_parts: vec![0; 4],
-        ..MeshSource::default()
+        ..MeshSource::of_polygons(
+            [0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3].map(SourceCorner::bare),
+            vec![3; 4],
+        )
     };
     model("tetrahedron", source, Vec::new())
 }

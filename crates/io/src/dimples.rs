@@ -77,9 +77,7 @@ fn source() -> MeshSource {
             _ if ring + 1 == RINGS => &[a, b, d],
             _ => &[a, b, c, d],
         };
-        source.corners.extend_from_slice(outline);
-        source.arities.push(u32::try_from(outline.len()).unwrap_or(0));
-        source.polygon_parts.push(0);
+        source.push_polygon(outline);
     }
     source
 }

@@ -19,8 +19,8 @@ use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::base::math;
 use marraztu_core::scene::{
     Camera, Command, Item, Lens, Light, LightId, LightKind, Material, MaterialChoice, Mesh,
-    MeshSource, Model, NONE, Object, ObjectId, Part, Pose, PresetId, Projection, Scene,
-    SourceCorner, Tracked,
+    MeshSource, Model, NONE, Object, ObjectId, Pose, PresetId, Projection, Scene, SourceCorner,
+    Tracked,
 };
 use marraztu_io::cam_model;
 use marraztu_render::Renderer;
@@ -180,10 +180,7 @@ fn disk(picture: &Picture, side: usize) -> ColorImage {
 fn ball() -> Shared<Model> {
     const RINGS: u32 = 24;
     const SECTORS: u32 = 48;
-    let mut source = MeshSource {
-        parts: vec![Part { name: String::new(), material: None }],
-        ..MeshSource::default()
-    };
+    let mut source = MeshSource::of_polygons([], Vec::new());
     // Vertices in rings from pole to pole. The poles are rings of equal points.
     for ring in 0..=RINGS {
         let polar = std::f64::consts::PI * f64::from(ring) / f64::from(RINGS);
@@ -202,14 +199,12 @@ fn ball() -> Shared<Model> {
     };
     for ring in 0..RINGS {
         for sector in 0..SECTORS {
-            source.corners.extend([
+            source.push_polygon(&[
                 corner(ring, sector),
                 corner(ring + 1, sector),
                 corner(ring + 1, sector + 1),
                 corner(ring, sector + 1),
             ]);
-            source.arities.push(4);
-            source.polygon_parts.push(0);
         }
     }
     Shared::new(Model::of_mesh(

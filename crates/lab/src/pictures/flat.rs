@@ -12,8 +12,8 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::color::Color;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{
-    Camera, CameraId, Lens, List, MaterialChoice, Mesh, MeshSource, Model, NONE, Object, ObjectId,
-    Part, Pose, PresetId, Projection, Scene, Sides, SourceCorner, Surface, Tracked, View,
+    Camera, CameraId, Lens, List, MaterialChoice, Mesh, MeshSource, Model, Object, ObjectId, Pose,
+    PresetId, Projection, Scene, Sides, SourceCorner, Surface, Tracked, View,
 };
 use marraztu_render::Renderer;
 use marraztu_render::plan_frame;
@@ -109,12 +109,7 @@ pub fn place(corner: Snapped, distance: f64, side: usize) -> DVec3 {
 }
 
 fn model(triangles: &[Flat], side: usize, first: usize) -> Shared<Model> {
-    let mut source = MeshSource {
-        parts: vec![Part { name: "triangles".to_owned(), material: None }],
-        arities: vec![3; triangles.len()],
-        polygon_parts: vec![0; triangles.len()],
-        ..MeshSource::default()
-    };
+    let mut source = MeshSource::of_polygons([], vec![3; triangles.len()]);
     for (number, triangle) in triangles.iter().enumerate() {
         for (corner, distance) in triangle.corners.into_iter().zip(triangle.distances) {
             let place = place(corner, distance, side);
@@ -122,7 +117,7 @@ fn model(triangles: &[Flat], side: usize, first: usize) -> Shared<Model> {
             let narrow = place.as_vec3();
             assert_eq!(narrow.as_dvec3(), place, "a corner has too many bits");
             let position = u32::try_from(source.positions.len()).expect("few triangles");
-            source.corners.push(SourceCorner { position, uv: NONE, normal: NONE });
+            source.corners.push(SourceCorner::bare(position));
             source.positions.push(narrow.to_array());
             let [r, g, b, _] = color_of(first + number).map(|byte| f32::from(byte) / 255.0);
             source.colors.push([r, g, b]);

@@ -19,7 +19,7 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::base::rng::Rng;
 use marraztu_core::scene::{
-    Command, Fill, Item, Mesh, MeshSource, Model, NONE, Normals, Object, Part, Projection, Scene,
+    Command, Fill, Item, Mesh, MeshSource, Model, NONE, Normals, Object, Projection, Scene,
     SourceCorner, Texture, View, Wrap,
 };
 use marraztu_io as io;
@@ -183,21 +183,15 @@ fn textured(scene: &Scene) -> Scene {
 
 /// Builds a leaning square of 2 x 2 quads with texture coordinates.
 fn wall() -> Shared<Model> {
-    let mut source = MeshSource {
-        parts: vec![Part { name: "wall".to_owned(), material: None }],
-        polygon_parts: vec![0; 4],
-        arities: vec![4; 4],
-        ..MeshSource::default()
-    };
+    let mut source = MeshSource::of_polygons([], Vec::new());
     for i in 0..9_u8 {
         let (x, y) = (f32::from(i % 3) - 1.0, f32::from(i / 3) - 1.0);
         source.positions.push([9.0 * x, 9.0 * y, -3.0 * x * y]);
         source.uvs.push([x, y]);
     }
     for first in [0, 1, 3, 4] {
-        for i in [first, first + 1, first + 4, first + 3] {
-            source.corners.push(SourceCorner { position: i, uv: i, normal: NONE });
-        }
+        let quad = [first, first + 1, first + 4, first + 3];
+        source.push_polygon(&quad.map(|i| SourceCorner { position: i, uv: i, normal: NONE }));
     }
     Shared::new(Model::of_mesh("wall", Mesh::new(source).expect("these numbers are finite")))
 }

@@ -41,9 +41,7 @@ impl Maker {
             let uv = if textured { *position } else { NONE };
             SourceCorner { position: *position, uv, normal: NONE }
         };
-        self.source.corners.extend(vertices.iter().map(corner));
-        self.source.arities.push(vertices.len() as u32);
-        self.source.polygon_parts.push(0);
+        self.source.push_polygon(&vertices.iter().map(corner).collect::<Vec<_>>());
     }
 
     fn model(mut self, name: &str) -> Shared<Model> {

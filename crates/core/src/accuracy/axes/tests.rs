@@ -86,11 +86,7 @@ fn a_filter_changes_nothing_without_a_texture_nor_a_highlight_without_ks() {
     use crate::scene::*;
     let source = MeshSource {
         positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
-        corners: (0..3).map(|position| SourceCorner { position, uv: NONE, normal: NONE }).collect(),
-        arities: vec![3],
-        polygon_parts: vec![0],
-        parts: vec![Part { name: String::new(), material: None }],
-        ..MeshSource::default()
+        ..MeshSource::of_polygons((0..3).map(SourceCorner::bare), vec![3])
     };
     let model = Shared::new(Model::of_mesh("", Mesh::new(source).unwrap()));
     let dull = Material {

@@ -66,6 +66,26 @@ pub struct MeshSource {
     pub smoothing: Smoothing,
 }
 
+impl MeshSource {
+    /// Creates one part with polygons of these corners and corner counts, without vertices.
+    pub fn of_polygons(corners: impl IntoIterator<Item = SourceCorner>, arities: Vec<u32>) -> Self {
+        Self {
+            corners: corners.into_iter().collect(),
+            polygon_parts: vec![0; arities.len()],
+            arities,
+            parts: vec![Part { name: String::new(), material: None }],
+            ..Self::default()
+        }
+    }
+
+    /// Adds a polygon to the first part.
+    pub fn push_polygon(&mut self, corners: &[SourceCorner]) {
+        self.corners.extend_from_slice(corners);
+        self.arities.push(index(corners.len()));
+        self.polygon_parts.push(0);
+    }
+}
+
 /// A corner of a polygon in the file's numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SourceCorner {
@@ -75,6 +95,13 @@ pub struct SourceCorner {
     pub uv: u32,
     /// The corner's normal, or [`NONE`].
     pub normal: u32,
+}
+
+impl SourceCorner {
+    /// Returns a corner without texture coordinates and without a normal.
+    pub const fn bare(position: u32) -> Self {
+        Self { position, uv: NONE, normal: NONE }
+    }
 }
 
 /// A run of polygons with the same `o`, `g` and `usemtl` in a file.
@@ -396,10 +423,6 @@ pub(super) fn index(i: usize) -> u32 {
 mod tests {
     use super::*;
 
-    fn corner(position: u32) -> SourceCorner {
-        SourceCorner { position, uv: NONE, normal: NONE }
-    }
-
     /// Builds a roof: two squares that meet at a right angle along the side from vertex 0 to
     /// vertex 1.
     fn roof() -> MeshSource {
@@ -412,11 +435,7 @@ mod tests {
                 [1.0, 0.0, 0.0],
                 [1.0, 0.0, 1.0],
             ],
-            corners: [0, 3, 2, 1, 0, 1, 5, 4].map(corner).to_vec(),
-            arities: vec![4, 4],
-            polygon_parts: vec![0, 0],
-            parts: vec![Part { name: "roof".to_owned(), material: None }],
-            ..MeshSource::default()
+            ..MeshSource::of_polygons([0, 3, 2, 1, 0, 1, 5, 4].map(SourceCorner::bare), vec![4, 4])
         }
     }
 
@@ -440,7 +459,7 @@ mod tests {
     fn opposite_normals_give_each_corner_its_own_polygons_normal() {
         let mut source = roof();
         // The same square twice, seen from opposite sides.
-        source.corners = [0, 3, 2, 1, 1, 2, 3, 0].map(corner).to_vec();
+        source.corners = [0, 3, 2, 1, 1, 2, 3, 0].map(SourceCorner::bare).to_vec();
         let mesh = Mesh::new(source).unwrap();
         for polygon in 0..2 {
             for corner in mesh.polygon(polygon) {

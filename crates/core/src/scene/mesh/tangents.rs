@@ -100,7 +100,7 @@ impl Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{MeshSource, Part, SourceCorner};
+    use crate::scene::{MeshSource, SourceCorner};
 
     /// Builds a square in the plane z = 0. Its second triangle is mirrored on the texture.
     fn square() -> Mesh {
@@ -108,11 +108,10 @@ mod tests {
         Mesh::new(MeshSource {
             positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]],
             uvs: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [2.0, 1.0]],
-            corners: [(0, 0), (1, 1), (2, 2), (0, 0), (2, 2), (3, 3)].map(corner).to_vec(),
-            arities: vec![3, 3],
-            polygon_parts: vec![0, 0],
-            parts: vec![Part { name: String::new(), material: None }],
-            ..MeshSource::default()
+            ..MeshSource::of_polygons(
+                [(0, 0), (1, 1), (2, 2), (0, 0), (2, 2), (3, 3)].map(corner),
+                vec![3, 3],
+            )
         })
         .unwrap()
     }
