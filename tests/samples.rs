@@ -17,7 +17,6 @@ use marraztu_core::base::rng::Rng;
 use marraztu_core::scene::{
     Aim, ItemId, Light, LightId, LightKind, Material, MaterialChoice, MeshSource, NormalLength,
     ObjectId, Projection, Scene, Sides, SourceCorner, SpotOwner, Surface, Texture, Tracked, View,
-    Wrap,
 };
 use marraztu_lab::picture_source::{PictureSource as _, Studio};
 use marraztu_lab::pictures::flat::{self, Flat};
@@ -157,24 +156,17 @@ fn shiny(triangles: &[Flat], side: usize) -> (Scene, View) {
     }
     let model = model_of("shiny", source);
     let texels = (0..36).map(|_| [random(255) as u8, 200, random(255) as u8, 255]);
-    let texture = Texture {
-        source: std::path::PathBuf::new(),
-        picture: Picture::from_pixels(Size::new(6, 6), texels.collect()).unwrap().into(),
-        wrap: Wrap::Repeat,
-        offset: [0.0; 2],
-        scale: [1.0; 2],
-    };
+    let picture = Picture::from_pixels(Size::new(6, 6), texels.collect()).unwrap();
+    let texture = Texture::new("", picture);
     edit(&mut scene, ObjectId(1), |object| {
         object.model = model;
         object.texture = Some(Shared::new(texture));
         object.surface = Surface::TextureAndLight;
         object.file_normals = true;
         object.material = MaterialChoice::Own(Material {
-            ambient: [0.1; 3],
-            diffuse: [0.5; 3],
             specular: [0.6; 3],
             exponent: 40.0,
-            emission: [0.0; 3],
+            ..Material::matte([0.1; 3], [0.5; 3])
         });
     });
     let suns =
@@ -292,13 +284,7 @@ fn the_border_of_a_spot_is_as_soft_as_there_are_samples() {
     let kind = LightKind::Spot { owner, half_aperture: 25.0, exponent: 0.0 };
     scene.lights = [(LightId(900), Light::new("spot", 1, kind))].into_iter().collect();
     edit(&mut scene, ObjectId(10), |object| {
-        object.material = MaterialChoice::Own(Material {
-            ambient: [0.0; 3],
-            diffuse: [0.9; 3],
-            specular: [0.0; 3],
-            exponent: 1.0,
-            emission: [0.0; 3],
-        });
+        object.material = MaterialChoice::Own(Material::matte([0.0; 3], [0.9; 3]));
     });
     for projection in [Projection::Perspective, Projection::Orthographic] {
         let view = View { projection, ..view.clone() };

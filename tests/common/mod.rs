@@ -9,8 +9,8 @@ use marraztu_core::accuracy::Shot;
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{
-    Camera, CameraId, Command, Item, Lens, Light, LightId, MaterialChoice, Mesh, MeshSource, Model,
-    Object, ObjectId, Part, Pose, PresetId, Scene, SourceCorner, Tracked, View,
+    Camera, CameraId, Command, Item, Light, LightId, MaterialChoice, Mesh, MeshSource, Model,
+    Object, ObjectId, Part, PresetId, Scene, SourceCorner, Tracked, View,
 };
 use marraztu_render::Renderer;
 use marraztu_render::plan_frame;
@@ -73,14 +73,8 @@ pub(crate) fn ball(rings: u32) -> Shared<Model> {
 
 /// A camera at (0, 0, 400), looking along -Z.
 pub(crate) fn camera() -> Camera {
-    Camera {
-        name: "camera 1".to_owned(),
-        visible: true,
-        model: cube(),
-        material: MaterialChoice::Preset(PresetId::OBSIDIAN),
-        pose: Tracked::new(Pose::facing_minus_z(DVec3::new(0.0, 0.0, 400.0))),
-        lens: Lens::default(),
-    }
+    let obsidian = MaterialChoice::Preset(PresetId::OBSIDIAN);
+    Camera::new("camera 1", cube(), obsidian, DVec3::new(0.0, 0.0, 400.0))
 }
 
 /// Builds a scene with the five lights and these models at their placements, oldest first.

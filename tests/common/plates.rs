@@ -3,8 +3,8 @@
 use glam::{DMat4, DVec3};
 use marraztu_core::base::Shared;
 use marraztu_core::scene::{
-    Camera, Command, Item, ItemId, Lens, Light, LightId, MaterialChoice, Mesh, MeshSource, Model,
-    NONE, Object, ObjectId, Part, Pose, PresetId, Scene, SourceCorner, Tracked, View,
+    Camera, Command, Item, ItemId, Light, LightId, MaterialChoice, Mesh, MeshSource, Model, NONE,
+    Object, ObjectId, Part, PresetId, Scene, SourceCorner, Tracked, View,
 };
 
 /// Two triangles, each its own part. The mean of the vertices is (1, 2, 3), and every vertex is 5
@@ -26,14 +26,8 @@ pub(crate) fn model() -> Shared<Model> {
 /// A camera at (0, 0, 400); objects 3, 2 and 1 in this order, at (-100, 0, 0), (100, 0, 0) and
 /// (0, 0, -400), with 3 selected; the five lights as 4 to 8, with the sun selected.
 pub(crate) fn three_objects() -> (Scene, View) {
-    let camera = Camera {
-        name: "camera 1".to_owned(),
-        visible: true,
-        model: model(),
-        material: MaterialChoice::Preset(PresetId::OBSIDIAN),
-        pose: Tracked::new(Pose::facing_minus_z(DVec3::Z * 400.0)),
-        lens: Lens::default(),
-    };
+    let obsidian = MaterialChoice::Preset(PresetId::OBSIDIAN);
+    let camera = Camera::new("camera 1", model(), obsidian, DVec3::Z * 400.0);
     let mut scene = Scene::with_camera(camera);
     let places = [DVec3::Z * -400.0, DVec3::X * 100.0, DVec3::X * -100.0];
     for (id, place) in (1..).zip(places) {

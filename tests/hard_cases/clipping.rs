@@ -506,13 +506,9 @@ fn case_18_objects_behind_the_observer_are_invisible() {
 /// A texture with 256 texels in a row. The colour of a texel is its index.
 pub(super) fn ruler(scale: f64) -> marraztu_core::base::Shared<marraztu_core::scene::Texture> {
     let texels = (0..=255).map(|i| [i, i, i, 255]).collect();
-    marraztu_core::base::Shared::new(marraztu_core::scene::Texture {
-        source: std::path::PathBuf::new(),
-        picture: Picture::from_pixels(Size::new(256, 1), texels).unwrap().into(),
-        wrap: marraztu_core::scene::Wrap::Repeat,
-        offset: [0.0; 2],
-        scale: [scale, 1.0],
-    })
+    let picture = Picture::from_pixels(Size::new(256, 1), texels).unwrap();
+    let once = marraztu_core::scene::Texture::new("", picture);
+    marraztu_core::scene::Texture { scale: [scale, 1.0], ..once }.into()
 }
 
 /// A triangle with a texture coordinate u at each corner.

@@ -134,15 +134,9 @@ fn painted(corners: [Snapped; 3], colors: [[f32; 3]; 3], side: usize) -> Picture
 fn case_39_places_beyond_the_texture_are_brought_back_into_it() {
     // Two texels: the shown colour tells which half of the texture was sampled.
     let texture = |wrap: Wrap| {
-        Shared::new(Texture {
-            source: std::path::PathBuf::new(),
-            picture: Picture::from_pixels(Size::new(2, 1), vec![[10, 0, 0, 255], [20, 0, 0, 255]])
-                .unwrap()
-                .into(),
-            wrap,
-            offset: [0.0; 2],
-            scale: [1.0; 2],
-        })
+        let texels = vec![[10, 0, 0, 255], [20, 0, 0, 255]];
+        let picture = Picture::from_pixels(Size::new(2, 1), texels).unwrap();
+        Shared::new(Texture { wrap, ..Texture::new("", picture) })
     };
     let corners = [(-90.0, -90.0), (90.0, -90.0), (0.0, 90.0)].map(|(x, y)| DVec3::new(x, y, 0.0));
     let mut wrong = 0;
@@ -267,13 +261,7 @@ fn case_40_the_same_light_at_all_corners_stays_that_light() {
         let (mut scene, view) = scene(&[(face, DMat4::IDENTITY)]);
         edit(&mut scene, ObjectId(10), |object| {
             let (ambient, none) = ([factor; 3], [0.0; 3]);
-            let dull = Material {
-                ambient,
-                diffuse: none,
-                specular: none,
-                exponent: 1.0,
-                emission: [0.0; 3],
-            };
+            let dull = Material::matte(ambient, none);
             object.material = MaterialChoice::Own(dull);
         });
         let settings = Settings { light: LightAt::Vertex, ..Settings::default() };

@@ -41,11 +41,9 @@ fn with_lamps(scene: &mut Scene, lamps: &[OracleLight]) {
 /// A grey material.
 fn stuff(matter: &OracleMaterial) -> MaterialChoice {
     MaterialChoice::Own(Material {
-        ambient: [matter.ambient; 3],
-        diffuse: [matter.diffuse; 3],
         specular: [matter.specular; 3],
         exponent: matter.exponent,
-        emission: [0.0; 3],
+        ..Material::matte([matter.ambient; 3], [matter.diffuse; 3])
     })
 }
 
@@ -549,11 +547,9 @@ fn case_50_the_order_of_lights_does_not_show() {
     // Three channels with different digits: about one byte in 100,000 is so close to a rounding
     // border that the last bit of a sum decides.
     let material = Material {
-        ambient: [0.03, 0.041, 0.023],
-        diffuse: [0.11, 0.13, 0.17],
         specular: [0.07, 0.05, 0.09],
         exponent: 9.0,
-        emission: [0.0; 3],
+        ..Material::matte([0.03, 0.041, 0.023], [0.11, 0.13, 0.17])
     };
     edit(&mut scene, ObjectId(10), |object| object.material = MaterialChoice::Own(material));
     with_lamps(&mut scene, &lamps);

@@ -24,8 +24,7 @@ fn noise(width: usize, height: usize, wrap: Wrap, scale: [f64; 2]) -> Shared<Tex
         [grey, grey, grey, 255]
     });
     let picture = Picture::from_pixels(Size::new(width, height), texels.collect()).unwrap();
-    let source = std::path::PathBuf::new();
-    Shared::new(Texture { source, picture: picture.into(), wrap, offset: [0.0; 2], scale })
+    Shared::new(Texture { wrap, scale, ..Texture::new("", picture) })
 }
 
 /// An unlit quad with texture coordinates at its corners.

@@ -59,13 +59,7 @@ fn stage(sheets: &[(u32, Sheet)]) -> (Scene, View) {
         edit(&mut scene, ObjectId(id), |object| {
             object.sides = Sides::Two;
             object.opacity = sheet.opacity;
-            object.material = MaterialChoice::Own(Material {
-                ambient: sheet.color,
-                diffuse: [0.0; 3],
-                specular: [0.0; 3],
-                exponent: 1.0,
-                emission: [0.0; 3],
-            });
+            object.material = MaterialChoice::Own(Material::matte(sheet.color, [0.0; 3]));
         });
     }
     // Ids give the ages: an object with a smaller id is older.
@@ -317,13 +311,8 @@ fn case_85_glass_that_reaches_behind_the_eye_is_cut_at_the_near_plane() {
 #[test]
 fn case_86_a_texture_fades_evenly() {
     let texels = (0..16).map(|i| [200, 100, 50, (i * 17) as u8]).collect();
-    let texture = Texture {
-        source: std::path::PathBuf::new(),
-        picture: Picture::from_pixels(Size::new(16, 1), texels).unwrap().into(),
-        wrap: Wrap::Clamp,
-        offset: [0.0; 2],
-        scale: [1.0; 2],
-    };
+    let picture = Picture::from_pixels(Size::new(16, 1), texels).unwrap();
+    let texture = Texture { wrap: Wrap::Clamp, ..Texture::new("", picture) };
     let sheet = turned(DVec3::ZERO, 0.4, [1.0; 3], 0.9);
     let (mut scene, view) = stage(&in_order(&[sheet]));
     let texture = Shared::new(texture);

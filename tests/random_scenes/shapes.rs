@@ -1,6 +1,5 @@
 //! Shapes, materials and textures for random scenes.
 
-use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use marraztu_core::base::Shared;
@@ -112,30 +111,11 @@ fn two_parts() -> Shared<Model> {
             .collect(),
         ..one
     };
-    let dull = Material {
-        ambient: [0.1; 3],
-        diffuse: [0.7, 0.4, 0.2],
-        specular: [0.0; 3],
-        exponent: 1.0,
-        emission: [0.0; 3],
-    };
-    let shiny = Material {
-        ambient: [0.0; 3],
-        diffuse: [0.0; 3],
-        specular: [0.9; 3],
-        exponent: 20.0,
-        emission: [0.0; 3],
-    };
-    let file = |name: &str, material, opacity| FileMaterial {
-        name: name.to_owned(),
-        material,
-        opacity,
-        texture: None,
-        maps: SurfaceMaps::new(),
-        unlit: false,
-        undrawn: Undrawn::new(),
-    };
-    model("two parts", source, vec![file("dull", dull, 1.0), file("shiny", shiny, 0.6)])
+    let dull = Material::matte([0.1; 3], [0.7, 0.4, 0.2]);
+    let shiny =
+        Material { specular: [0.9; 3], exponent: 20.0, ..Material::matte([0.0; 3], [0.0; 3]) };
+    let shiny = FileMaterial { opacity: 0.6, ..FileMaterial::new("shiny", shiny) };
+    model("two parts", source, vec![FileMaterial::new("dull", dull), shiny])
 }
 
 /// A tetrahedron with a colour at each vertex.
@@ -212,13 +192,7 @@ pub(crate) fn texture(rng: &mut Rng) -> Shared<Texture> {
         [byte(rng), byte(rng), byte(rng), rng.one_of(alphas)]
     };
     let texels = (0..side * side).map(|_| texel()).collect();
-    Shared::new(Texture {
-        source: PathBuf::new(),
-        picture: Picture::from_pixels(Size::new(side, side), texels)
-            .expect("as many as it has")
-            .into(),
-        wrap: rng.one_of(&[Wrap::Repeat, Wrap::Clamp]),
-        offset: [0.0; 2],
-        scale: [1.0; 2],
-    })
+    let picture = Picture::from_pixels(Size::new(side, side), texels).expect("as many as it has");
+    let wrap = rng.one_of(&[Wrap::Repeat, Wrap::Clamp]);
+    Texture { wrap, ..Texture::new("", picture) }.into()
 }

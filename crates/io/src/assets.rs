@@ -12,8 +12,8 @@ use super::texture::own_picture;
 use marraztu_core::base::Shared;
 use marraztu_core::base::once::get_or_compute;
 use marraztu_core::scene::{
-    Camera, CameraId, Crease, Lens, Light, LightId, List, LoadOptions, MaterialChoice, Model,
-    Object, ObjectId, Pose, PresetId, Scene, Shape, Texture, Tracked, View, Wrap,
+    Camera, CameraId, Crease, Light, LightId, List, LoadOptions, MaterialChoice, Model, Object,
+    ObjectId, PresetId, Scene, Shape, Texture, Tracked, View,
 };
 
 /// A built-in model.
@@ -76,9 +76,8 @@ pub fn own_texture(path: &str) -> Option<Shared<Texture>> {
     static TEXTURE: OnceLock<Shared<Texture>> = OnceLock::new();
     let (own, content) = TILES;
     let read = || {
-        let picture = own_picture(content).expect("the program's own texture is sound").into();
-        let (wrap, offset, scale) = (Wrap::default(), [0.0; 2], [1.0; 2]);
-        Shared::new(Texture { source: own.into(), picture, wrap, offset, scale })
+        let picture = own_picture(content).expect("the program's own texture is sound");
+        Shared::new(Texture::new(own, picture))
     };
     (path == own).then(|| get_or_compute(&TEXTURE, read).clone())
 }
@@ -106,14 +105,8 @@ pub fn default_scene() -> (Scene, View) {
 
 /// Builds the first scene without its objects, on a background that contrasts with all models.
 pub fn empty_scene() -> (Scene, View) {
-    let camera = Camera {
-        name: "camera 1".to_owned(),
-        visible: true,
-        model: cam_model(),
-        material: MaterialChoice::Preset(PresetId::OBSIDIAN),
-        pose: Tracked::new(Pose::facing_minus_z(DVec3::new(0.0, 0.0, 400.0))),
-        lens: Lens::default(),
-    };
+    let obsidian = MaterialChoice::Preset(PresetId::OBSIDIAN);
+    let camera = Camera::new("camera 1", cam_model(), obsidian, DVec3::new(0.0, 0.0, 400.0));
     let lights = Light::five().into_iter().zip(4..).map(|(light, id)| (LightId(id), light));
     let scene = Scene {
         objects: List::default(),

@@ -16,7 +16,7 @@ use super::progress::Progress;
 use super::texture::own_picture;
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::Picture;
-use marraztu_core::scene::{LoadOptions, Texture, Wrap};
+use marraztu_core::scene::{LoadOptions, Texture};
 
 /// The prefix of paths to the built-in examples.
 const FOLDER: &str = "example:/";
@@ -176,9 +176,8 @@ pub(super) fn model(
 /// Decodes a texture of the examples from its `content`. Fails if it is not a picture.
 pub(super) fn texture(path: &Path, content: &[u8]) -> Result<Shared<Texture>, LoadError> {
     let not_a_picture = || LoadError::file(&shown(path), "the picture cannot be decoded");
-    let picture = own_picture(content).ok_or_else(not_a_picture)?.into();
-    let (wrap, offset, scale) = (Wrap::Repeat, [0.0; 2], [1.0; 2]);
-    Ok(Shared::new(Texture { source: path.to_owned(), picture, wrap, offset, scale }))
+    let picture = own_picture(content).ok_or_else(not_a_picture)?;
+    Ok(Shared::new(Texture::new(path, picture)))
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use super::progress::Progress;
 use super::read::read;
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
-use marraztu_core::scene::{Texture, Wrap};
+use marraztu_core::scene::Texture;
 
 /// The largest side of a texture, in texels.
 const LARGEST_SIDE: u32 = 16_384;
@@ -144,14 +144,9 @@ impl Pictures {
             own.add(FindingKind::TextureCutOff, &shown(path), None);
             findings.extend(own.into_list());
         }
-        Ok(Shared::new(Texture {
-            // An absolute path stays valid when the current folder changes.
-            source: std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned()),
-            picture,
-            wrap: Wrap::Repeat,
-            offset: [0.0; 2],
-            scale: [1.0; 2],
-        }))
+        // An absolute path stays valid when the current folder changes.
+        let source = std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned());
+        Ok(Shared::new(Texture::new(source, picture)))
     }
 }
 

@@ -19,8 +19,7 @@ use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::base::math;
 use marraztu_core::scene::{
     Camera, Command, Item, Lens, Light, LightId, LightKind, Material, MaterialChoice, Mesh,
-    MeshSource, Model, NONE, Object, ObjectId, Pose, PresetId, Projection, Scene, SourceCorner,
-    Tracked,
+    MeshSource, Model, NONE, Object, ObjectId, PresetId, Projection, Scene, SourceCorner, Tracked,
 };
 use marraztu_io::cam_model;
 use marraztu_render::Renderer;
@@ -112,14 +111,9 @@ impl Spheres {
 
 /// Creates a scene with a sphere, a camera and two lights.
 fn studio() -> (Scene, Renderer) {
-    let mut scene = Scene::with_camera(Camera {
-        name: String::new(),
-        visible: false,
-        model: cam_model(),
-        material: MaterialChoice::File,
-        pose: Tracked::new(Pose::facing_minus_z(DVec3::Z * 5.0)),
-        lens: Lens { half_size: 0.95, parallel_far: 10.0, ..Lens::default() },
-    });
+    let lens = Lens { half_size: 0.95, parallel_far: 10.0, ..Lens::default() };
+    let camera = Camera::new("", cam_model(), MaterialChoice::File, DVec3::Z * 5.0);
+    let mut scene = Scene::with_camera(Camera { visible: false, lens, ..camera });
     let direction = math::unit(DVec3::new(0.5, -0.6, -0.75)).unwrap_or(DVec3::NEG_Z);
     let sun = LightKind::Sun { direction: Tracked::new(direction) };
     let object = Object::new(ball(), MaterialChoice::File);
@@ -225,13 +219,7 @@ mod tests {
     #[test]
     fn a_sphere_is_its_material_brightest_at_the_upper_left_and_clear_about_it() {
         let (mut scene, mut renderer) = studio();
-        let red = Material {
-            ambient: [0.1, 0.0, 0.0],
-            diffuse: [0.8, 0.0, 0.0],
-            specular: [0.0; 3],
-            exponent: 1.0,
-            emission: [0.0; 3],
-        };
+        let red = Material::matte([0.1, 0.0, 0.0], [0.8, 0.0, 0.0]);
         let image = image(&mut scene, &mut renderer, red, 32);
         let at = |x: usize, y: usize| image.pixels[y * 32 + x];
         assert_eq!(at(0, 0), Color32::TRANSPARENT);

@@ -42,15 +42,7 @@ pub fn insert_objects(scene: &Scene, objects: Vec<Object>) -> Command {
 #[must_use]
 pub fn insert_camera(scene: &Scene, model: Shared<Model>, material: MaterialChoice) -> Command {
     let number = scene.cameras.len() + 1;
-    let camera = Camera {
-        name: format!("camera {number}"),
-        visible: true,
-        model,
-        material,
-        pose: Tracked::new(Pose::facing_minus_z(DVec3::ZERO)),
-        lens: Lens::default(),
-    };
-    put_camera(scene, camera)
+    put_camera(scene, Camera::new(&format!("camera {number}"), model, material, DVec3::ZERO))
 }
 
 /// Adds a white light in the lowest free slot.

@@ -24,6 +24,15 @@ pub struct Camera {
     pub lens: Lens,
 }
 
+impl Camera {
+    /// Creates a camera at `eye` that looks along -Z, with the default lens.
+    pub fn new(name: &str, model: Shared<Model>, material: MaterialChoice, eye: DVec3) -> Self {
+        let pose = Tracked::new(Pose::facing_minus_z(eye));
+        let lens = Lens::default();
+        Self { name: name.to_owned(), visible: true, model, material, pose, lens }
+    }
+}
+
 /// The position, orientation and mode of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {

@@ -18,6 +18,13 @@ pub struct Material {
     pub emission: [f64; 3],
 }
 
+impl Material {
+    /// Creates a material without highlights and without light of its own.
+    pub const fn matte(ambient: [f64; 3], diffuse: [f64; 3]) -> Self {
+        Self { ambient, diffuse, specular: [0.0; 3], exponent: 1.0, emission: [0.0; 3] }
+    }
+}
+
 fn is_dark(emission: &[f64; 3]) -> bool {
     *emission == [0.0; 3]
 }

@@ -225,6 +225,21 @@ pub struct FileMaterial {
     pub undrawn: Undrawn,
 }
 
+impl FileMaterial {
+    /// Creates an opaque material without pictures.
+    pub fn new(name: &str, material: Material) -> Self {
+        Self {
+            name: name.to_owned(),
+            material,
+            opacity: 1.0,
+            texture: None,
+            maps: SurfaceMaps::new(),
+            unlit: false,
+            undrawn: Undrawn::new(),
+        }
+    }
+}
+
 /// The numbers of statements that do not affect pictures, by the usual spelling of the keyword.
 pub type Undrawn = BTreeMap<&'static str, Vec<f64>>;
 

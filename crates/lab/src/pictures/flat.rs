@@ -12,8 +12,8 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::color::Color;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{
-    Camera, CameraId, Lens, List, MaterialChoice, Mesh, MeshSource, Model, Object, ObjectId, Pose,
-    PresetId, Projection, Scene, Sides, SourceCorner, Surface, Tracked, View,
+    Camera, CameraId, Lens, List, MaterialChoice, Mesh, MeshSource, Model, Object, ObjectId,
+    PresetId, Projection, Scene, Sides, SourceCorner, Surface, View,
 };
 use marraztu_render::Renderer;
 use marraztu_render::plan_frame;
@@ -58,23 +58,14 @@ pub fn number_of([r, g, b, _]: [u8; 4]) -> Option<usize> {
 pub fn scene(objects: &[Vec<Flat>], side: usize) -> (Scene, View) {
     assert!(side.is_power_of_two(), "only then is every corner exact");
     // One unit is one pixel, and the centre of the picture is the origin.
-    let camera = Camera {
-        name: "camera".to_owned(),
-        visible: false,
-        model: model(&[], side, 0),
-        material: MaterialChoice::Preset(PresetId::SILVER),
-        pose: Tracked::new(Pose::facing_minus_z(DVec3::ZERO)),
-        lens: Lens {
-            half_size: side as f64 / 2.0,
-            parallel_near: 0.0,
-            parallel_far: FAR,
-            ..Lens::default()
-        },
-    };
+    let silver = || MaterialChoice::Preset(PresetId::SILVER);
+    let half_size = side as f64 / 2.0;
+    let lens = Lens { half_size, parallel_near: 0.0, parallel_far: FAR, ..Lens::default() };
+    let camera = Camera::new("camera", model(&[], side, 0), silver(), DVec3::ZERO);
+    let camera = Camera { visible: false, lens, ..camera };
     let mut number = 0;
     let objects = objects.iter().zip(1..).map(|(triangles, id)| {
-        let silver = MaterialChoice::Preset(PresetId::SILVER);
-        let mut object = Object::new(model(triangles, side, number), silver);
+        let mut object = Object::new(model(triangles, side, number), silver());
         number += triangles.len();
         // Unlit, so the vertex colours reach the picture unchanged.
         object.surface = Surface::Texture;

@@ -20,7 +20,7 @@ use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::base::rng::Rng;
 use marraztu_core::scene::{
     Command, Fill, Item, Mesh, MeshSource, Model, NONE, Normals, Object, Projection, Scene,
-    SourceCorner, Texture, View, Wrap,
+    SourceCorner, Texture, View,
 };
 use marraztu_io as io;
 use marraztu_render::plan_frame;
@@ -168,13 +168,9 @@ fn textured(scene: &Scene) -> Scene {
     let mut rng = Rng::new(5);
     let texels = (0..64).map(|_| rng.bits().to_le_bytes());
     let texels = texels.map(|[r, g, b, ..]| [r, g, b, 255]).collect();
-    let texture = Shared::new(Texture {
-        source: std::path::PathBuf::new(),
-        picture: Picture::from_pixels(Size::new(8, 8), texels).unwrap_or_default().into(),
-        wrap: Wrap::Repeat,
-        offset: [0.1, 0.2],
-        scale: [3.0, 5.0],
-    });
+    let picture = Picture::from_pixels(Size::new(8, 8), texels).unwrap_or_default();
+    let (offset, scale) = ([0.1, 0.2], [3.0, 5.0]);
+    let texture = Shared::new(Texture { offset, scale, ..Texture::new("", picture) });
     change(scene, |object| {
         object.model = wall();
         object.texture = Some(texture);

@@ -7,8 +7,6 @@
     reason = "coordinates of small scenes"
 )]
 
-use std::path::PathBuf;
-
 use glam::{DMat4, DVec3};
 
 use marraztu_core::base::Shared;
@@ -16,7 +14,7 @@ use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{
     Aim, Camera, Light, LightId, LightKind, List, Material, MaterialChoice, Mesh, MeshSource,
     Model, NONE, Object, ObjectId, Orbit, Part, Pose, Scene, Smoothing, SourceCorner, SpotOwner,
-    Surface, Texture, Tracked, View, Wrap,
+    Surface, Texture, Tracked, View,
 };
 use marraztu_io::{default_scene, empty_scene, own_model};
 
@@ -84,11 +82,9 @@ fn ball(rings: u32) -> Shared<Model> {
 fn shiny(color: [f64; 3], exponent: f64) -> MaterialChoice {
     let [ambient, diffuse] = [0.15, 0.55].map(|part| color.map(|c| c * part));
     MaterialChoice::Own(Material {
-        ambient,
-        diffuse,
         specular: [0.8; 3],
         exponent,
-        emission: [0.0; 3],
+        ..Material::matte(ambient, diffuse)
     })
 }
 
@@ -191,10 +187,7 @@ pub(super) fn textures(_: u32) -> (Scene, View) {
             *pixel = [190, 90, 60, 255];
         }
     }
-    let source = PathBuf::from("tiles");
-    let (picture, wrap) = (Shared::new(picture), Wrap::default());
-    let texture = Texture { source, picture, wrap, offset: [0.0; 2], scale: [1.0; 2] };
-    floor.texture = Some(Shared::new(texture));
+    floor.texture = Some(Shared::new(Texture::new("tiles", picture)));
     floor.surface = Surface::default();
     stage(vec![floor], DVec3::ZERO)
 }

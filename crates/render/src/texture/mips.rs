@@ -151,10 +151,7 @@ fn halved(picture: &Picture, decoding: Decoding) -> Picture {
 
 #[cfg(test)]
 mod tests {
-    use std::path::PathBuf;
-
     use super::*;
-    use marraztu_core::scene::Wrap;
 
     const TRILINEAR: Filter = Filter::Trilinear;
 
@@ -163,8 +160,7 @@ mod tests {
         let at = |i: usize| if i.is_multiple_of(2) { [255; 4] } else { [0, 0, 0, 255] };
         let picture =
             Picture::from_pixels(Size::new(side, side), (0..side * side).map(at).collect());
-        let picture = picture.unwrap().into();
-        Shared::new(Texture { picture, ..Texture::clone(&chequered(1)) })
+        Shared::new(Texture::new("", picture.unwrap()))
     }
 
     /// A pixel that is eight texels high and half a texel wide lies within one column.
@@ -187,9 +183,7 @@ mod tests {
         };
         let picture =
             Picture::from_pixels(Size::new(side, side), (0..side * side).map(at).collect());
-        let (wrap, offset, scale) = (Wrap::Repeat, [0.0; 2], [1.0; 2]);
-        let source = PathBuf::new();
-        Shared::new(Texture { source, picture: picture.unwrap().into(), wrap, offset, scale })
+        Shared::new(Texture::new("", picture.unwrap()))
     }
 
     #[test]
@@ -223,10 +217,7 @@ mod tests {
     fn odd_sizes_and_a_single_texel_have_mipmap_chains() {
         for (width, height, levels) in [(1, 1, 1), (5, 3, 3), (1, 8, 4)] {
             let size = Size::new(width, height);
-            let texture = Texture {
-                picture: Picture::filled(size, [9; 4]).into(),
-                ..Texture::clone(&chequered(1))
-            };
+            let texture = Texture::new("", Picture::filled(size, [9; 4]));
             let mips = Mips::new(&Shared::new(texture), Decoding::Stored);
             assert_eq!(mips.levels.len(), levels);
             let color: [f64; 4] =
