@@ -376,15 +376,8 @@ fn prepared(model: &Model, raw: bool, textured: bool) -> Model {
         parts: vec![Part { name: model.name.clone(), material: None }],
         ..MeshSource::default()
     };
-    Model {
-        name: model.name.clone(),
-        source: None,
-        companions: Vec::new(),
-        options: model.options,
-        mesh: Mesh::new(source).expect("a mesh's own triangles are a mesh"),
-        materials: Vec::new(),
-        edge_color: None,
-    }
+    let mesh = Mesh::new(source).expect("a mesh's own triangles are a mesh");
+    Model { options: model.options, ..Model::of_mesh(&model.name, mesh) }
 }
 
 /// Makes the job's texture: random texels, starting with the row at v = 0.

@@ -15,9 +15,8 @@ use marraztu_core::base::color::Color;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::base::rng::Rng;
 use marraztu_core::scene::{
-    Aim, ItemId, Light, LightId, LightKind, Material, MaterialChoice, MeshSource, NONE,
-    NormalLength, ObjectId, Part, Projection, Scene, Sides, SourceCorner, SpotOwner, Surface,
-    Texture, Tracked, View, Wrap,
+    Aim, ItemId, Light, LightId, LightKind, Material, MaterialChoice, MeshSource, NormalLength,
+    ObjectId, Projection, Scene, Sides, SourceCorner, SpotOwner, Surface, Texture, Tracked, View,
 };
 use marraztu_lab::picture_source::{PictureSource as _, Studio};
 use marraztu_lab::pictures::flat::{self, Flat};
@@ -143,11 +142,8 @@ fn shiny(triangles: &[Flat], side: usize) -> (Scene, View) {
     let (mut scene, view) = flat::scene(&[triangles.to_vec()], side);
     let mut rng = Rng::new(5);
     let mut random = |below: i32| rng.between(0, below - 1);
-    let mut source = MeshSource {
-        parts: vec![Part { name: "shiny".to_owned(), material: None }],
-        uvs: vec![[0.0, 0.0], [2.0, 0.0], [0.0, 3.0]],
-        ..MeshSource::default()
-    };
+    let mut source = MeshSource::of_polygons([], vec![3; triangles.len()]);
+    source.uvs = vec![[0.0, 0.0], [2.0, 0.0], [0.0, 3.0]];
     // Random normals and repeated texture coordinates, so each position has its own light.
     for triangle in triangles {
         for (corner, distance) in triangle.corners.into_iter().zip(triangle.distances) {
@@ -157,29 +153,20 @@ fn shiny(triangles: &[Flat], side: usize) -> (Scene, View) {
             let [x, y] = [random(200), random(200)].map(|x| x as f32 / 100.0 - 1.0);
             source.normals.push([x, y, 0.8]);
         }
-        source.arities.push(3);
-        source.polygon_parts.push(0);
     }
     let model = model_of("shiny", source);
     let texels = (0..36).map(|_| [random(255) as u8, 200, random(255) as u8, 255]);
-    let texture = Texture {
-        source: std::path::PathBuf::new(),
-        picture: Picture::from_pixels(Size::new(6, 6), texels.collect()).unwrap().into(),
-        wrap: Wrap::Repeat,
-        offset: [0.0; 2],
-        scale: [1.0; 2],
-    };
+    let picture = Picture::from_pixels(Size::new(6, 6), texels.collect()).unwrap();
+    let texture = Texture::new("", picture);
     edit(&mut scene, ObjectId(1), |object| {
         object.model = model;
         object.texture = Some(Shared::new(texture));
         object.surface = Surface::TextureAndLight;
         object.file_normals = true;
         object.material = MaterialChoice::Own(Material {
-            ambient: [0.1; 3],
-            diffuse: [0.5; 3],
             specular: [0.6; 3],
             exponent: 40.0,
-            emission: [0.0; 3],
+            ..Material::matte([0.1; 3], [0.5; 3])
         });
     });
     let suns =
@@ -297,13 +284,7 @@ fn the_border_of_a_spot_is_as_soft_as_there_are_samples() {
     let kind = LightKind::Spot { owner, half_aperture: 25.0, exponent: 0.0 };
     scene.lights = [(LightId(900), Light::new("spot", 1, kind))].into_iter().collect();
     edit(&mut scene, ObjectId(10), |object| {
-        object.material = MaterialChoice::Own(Material {
-            ambient: [0.0; 3],
-            diffuse: [0.9; 3],
-            specular: [0.0; 3],
-            exponent: 1.0,
-            emission: [0.0; 3],
-        });
+        object.material = MaterialChoice::Own(Material::matte([0.0; 3], [0.9; 3]));
     });
     for projection in [Projection::Perspective, Projection::Orthographic] {
         let view = View { projection, ..view.clone() };
@@ -489,10 +470,7 @@ fn away_from_edges_a_picture_is_the_same_with_any_number_of_samples() {
 
 /// A fan of triangles thinner than a pixel, with corner colours from 80 to 160.
 fn fan() -> (Scene, View) {
-    let mut source = MeshSource {
-        parts: vec![Part { name: "fan".to_owned(), material: None }],
-        ..MeshSource::default()
-    };
+    let mut source = MeshSource::of_polygons([], vec![3; 400]);
     let colors = [80.0, 120.0, 160.0].map(|byte: f32| [byte / 255.0; 3]);
     for i in 0..400_u16 {
         let turn = f32::from(i) / 400.0 * std::f32::consts::TAU;
@@ -505,12 +483,10 @@ fn fan() -> (Scene, View) {
             .zip(colors)
         {
             let position = source.positions.len() as u32;
-            source.corners.push(SourceCorner { position, uv: NONE, normal: NONE });
+            source.corners.push(SourceCorner::bare(position));
             source.positions.push(place);
             source.colors.push(color);
         }
-        source.arities.push(3);
-        source.polygon_parts.push(0);
     }
     let (mut scene, view) = scene(&[(model_of("fan", source), at(110.0, 0.0, 0.0, 0.0))]);
     edit(&mut scene, ObjectId(10), |object| {

@@ -18,13 +18,7 @@ const SIDE: usize = 64;
 
 /// A material with ambient light only, so other lights do not change its colour.
 fn plain(color: [f64; 3]) -> MaterialChoice {
-    let material = Material {
-        ambient: color,
-        diffuse: [0.0; 3],
-        specular: [0.0; 3],
-        exponent: 1.0,
-        emission: [0.0; 3],
-    };
+    let material = Material::matte(color, [0.0; 3]);
     MaterialChoice::Own(material)
 }
 

@@ -15,7 +15,7 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{
     Light, LightId, LightKind, Material, MaterialChoice, MeshSource, Model, NONE, Object, ObjectId,
-    Part, Scene, Sides, SourceCorner, Surface, Texture, View, Wrap,
+    Scene, Sides, SourceCorner, Surface, Texture, View, Wrap,
 };
 use marraztu_io::{lesson_on, lesson_scene};
 use marraztu_render::Renderer;
@@ -27,13 +27,7 @@ const SECOND: ObjectId = ObjectId(11);
 /// A matt material with an ambient colour only.
 fn matt(color: [f64; 3]) -> MaterialChoice {
     let [diffuse, specular] = [[0.0; 3]; 2];
-    MaterialChoice::Own(Material {
-        ambient: color,
-        diffuse,
-        specular,
-        exponent: 1.0,
-        emission: [0.0; 3],
-    })
+    MaterialChoice::Own(Material { specular, ..Material::matte(color, diffuse) })
 }
 
 fn unmarked(view: View) -> View {
@@ -77,11 +71,7 @@ fn chart(side: u32) -> Shared<Model> {
                 .map(|[x, y]| [2.0 * x - 1.0, 2.0 * y - 1.0, 0.0])
                 .collect(),
             uvs: (0..row * row).map(at).collect(),
-            corners: (0..side * side).flat_map(square).map(corner).collect(),
-            arities: vec![4; count],
-            polygon_parts: vec![0; count],
-            parts: vec![Part { name: "chart".to_owned(), material: None }],
-            ..MeshSource::default()
+            ..MeshSource::of_polygons((0..side * side).flat_map(square).map(corner), vec![4; count])
         },
     )
 }
@@ -94,13 +84,9 @@ fn fields(texels: usize, wrap: Wrap) -> Shared<Texture> {
         [200, 90, 40, if open { 0 } else { 255 }]
     };
     let texels = (0..size.area()).map(texel).collect();
-    Shared::new(Texture {
-        source: "fields".into(),
-        picture: Picture::from_pixels(size, texels).expect("as many as it has").into(),
-        wrap,
-        offset: [0.3, -0.1],
-        scale: [1.5, -1.0],
-    })
+    let picture = Picture::from_pixels(size, texels).expect("as many as it has");
+    let (offset, scale) = ([0.3, -0.1], [1.5, -1.0]);
+    Texture { wrap, offset, scale, ..Texture::new("fields", picture) }.into()
 }
 
 /// Catches: holes of a block or a triangle judged by only a part of it; texels outside the range
@@ -164,9 +150,8 @@ fn highlights_are_as_wrong_as_their_powers() {
     let opened = lesson_scene("ball").unwrap();
     let mut scene = opened.scene;
     edit(&mut scene, ObjectId(1), |object| {
-        let [ambient, diffuse] = [[0.0; 3]; 2];
-        let material =
-            Material { ambient, diffuse, specular: [1.0; 3], exponent: 76.8, emission: [0.0; 3] };
+        let black = Material::matte([0.0; 3], [0.0; 3]);
+        let material = Material { specular: [1.0; 3], exponent: 76.8, ..black };
         object.material = MaterialChoice::Own(material);
     });
     let picture = |power| {
@@ -187,10 +172,7 @@ fn normals_transformed_by_the_objects_own_matrix_lean_by_79_degrees() {
         * DMat4::from_rotation_x(-0.25 * std::f64::consts::PI);
     let (mut scene, view) = scene(&[(square(), at(50.0, 0.0, 0.0, 0.0) * press)]);
     edit(&mut scene, FIRST, |object| {
-        let [ambient, specular] = [[0.0; 3]; 2];
-        let material =
-            Material { ambient, diffuse: [1.0; 3], specular, exponent: 1.0, emission: [0.0; 3] };
-        object.material = MaterialChoice::Own(material);
+        object.material = MaterialChoice::Own(Material::matte([0.0; 3], [1.0; 3]));
     });
     let lit: Vec<LightId> = scene.lights.iter().map(|(id, _)| id).collect();
     for id in lit {

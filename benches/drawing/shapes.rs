@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 use marraztu_core::base::{Shared, math};
-use marraztu_core::scene::{LoadOptions, Mesh, MeshSource, Model, NONE, Part, SourceCorner};
+use marraztu_core::scene::{Mesh, MeshSource, Model, NONE, Part, SourceCorner};
 
 /// A mesh with a name.
 pub(crate) struct Shape {
@@ -152,13 +152,5 @@ fn faces(count: usize) -> MeshSource {
 }
 
 fn build(source: MeshSource) -> Shared<Model> {
-    Shared::new(Model {
-        name: "shape".to_owned(),
-        source: None,
-        companions: Vec::new(),
-        options: LoadOptions::default(),
-        mesh: Mesh::new(source).expect("shapes are meshes"),
-        materials: Vec::new(),
-        edge_color: None,
-    })
+    Shared::new(Model::of_mesh("shape", Mesh::new(source).expect("shapes are meshes")))
 }

@@ -88,13 +88,20 @@ pub(crate) struct PictureArguments {
     pub(crate) talk: Talk,
 
     #[command(flatten)]
+    pub(crate) scene: SceneArguments,
+    #[command(flatten)]
+    pub(crate) accuracy: Accuracy,
+}
+
+/// How files become a scene: how they are read, how surfaces look, and how it is looked at.
+#[derive(Debug, Args)]
+pub(crate) struct SceneArguments {
+    #[command(flatten)]
     pub(crate) reading: Reading,
     #[command(flatten)]
     pub(crate) surfaces: Surfaces,
     #[command(flatten)]
     pub(crate) seeing: Seeing,
-    #[command(flatten)]
-    pub(crate) accuracy: Accuracy,
 }
 
 /// How model files are read.

@@ -141,10 +141,8 @@ pub(super) fn ids(names: &LayerNames) -> Value {
     })
 }
 
-/// Writes the cameras of pictures to files of this name, in the folders of the pictures.
-///
-/// # Errors
-/// If a file cannot be written, or a file of another program has the name.
+/// Writes the cameras of pictures to files of this name, in the folders of the pictures. Fails if a
+/// file cannot be written, or a file of another program has the name.
 pub(crate) fn write_cameras(name: &str, frames: Vec<CameraFrame>) -> Result<(), Failure> {
     let mut folders: BTreeMap<PathBuf, Vec<CameraFrame>> = BTreeMap::new();
     for frame in frames {
@@ -166,9 +164,7 @@ pub(crate) fn write_cameras(name: &str, frames: Vec<CameraFrame>) -> Result<(), 
 }
 
 /// Checks, before anything is drawn, that the file at `path` is missing or one of an earlier run.
-///
-/// # Errors
-/// If it has other content.
+/// Fails if it has other content.
 pub(crate) fn check_cameras(path: &Path) -> Result<(), Failure> {
     read(path).map(drop)
 }

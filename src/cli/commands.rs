@@ -7,25 +7,6 @@ use clap::{Parser, Subcommand};
 
 #[cfg(feature = "desktop")]
 use super::arguments::choice;
-use super::arguments::{Info, Render};
-#[cfg(not(target_family = "wasm"))]
-use super::batch::Batch;
-#[cfg(not(target_family = "wasm"))]
-use super::compare::Compare;
-use super::explain::Explain;
-use super::export::Export;
-#[cfg(feature = "desktop")]
-use super::keys::Keys;
-#[cfg(not(target_family = "wasm"))]
-use super::lab::Lab;
-#[cfg(not(target_family = "wasm"))]
-use super::merge::Merge;
-use super::plan::Plan;
-use super::thumbnail::Thumbnail;
-use super::turntable::Turntable;
-use super::verify::Verify;
-#[cfg(not(target_family = "wasm"))]
-use super::views::Views;
 #[cfg(feature = "desktop")]
 use marraztu::app::Shell;
 #[cfg(feature = "desktop")]
@@ -76,39 +57,39 @@ pub(crate) struct Arguments {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Headless {
     /// Draw a picture into a file, with the same pixels as in the editor
-    Render(Box<Render>),
+    Render(Box<super::arguments::Render>),
     /// Draw many pictures: of all models of a list, from several views
     #[cfg(not(target_family = "wasm"))]
-    Batch(Box<Batch>),
+    Batch(Box<super::batch::Batch>),
     /// Join the reports of the parts of a batch
     #[cfg(not(target_family = "wasm"))]
-    Merge(Merge),
+    Merge(super::merge::Merge),
     /// Compare two pictures
     #[cfg(not(target_family = "wasm"))]
-    Compare(Compare),
+    Compare(super::compare::Compare),
     /// Draw standard views of a model into one picture, with its facts
     #[cfg(not(target_family = "wasm"))]
-    Views(Box<Views>),
+    Views(Box<super::views::Views>),
     /// Draw a small picture for a file manager
-    Thumbnail(Thumbnail),
+    Thumbnail(super::thumbnail::Thumbnail),
     /// Draw a turntable: a GIF, an animated PNG, or numbered pictures
-    Turntable(Box<Turntable>),
+    Turntable(Box<super::turntable::Turntable>),
     /// Export the scene as OBJ with MTL, or as glTF
-    Export(Box<Export>),
+    Export(Box<super::export::Export>),
     /// List the effects of a frame: on or left out, the reason, and the cost
-    Plan(Box<Plan>),
+    Plan(Box<super::plan::Plan>),
     /// Explain a pixel: its surface, and the light that makes up its colour
-    Explain(Box<Explain>),
+    Explain(Box<super::explain::Explain>),
     /// Describe files: shape, parts, materials and problems
-    Info(Info),
+    Info(super::arguments::Info),
     /// List every key of the editor
     #[cfg(feature = "desktop")]
-    Keys(Keys),
+    Keys(super::keys::Keys),
     /// Measure the cost of accuracy: time and error of each choice of each axis
     #[cfg(not(target_family = "wasm"))]
-    Lab(Box<Lab>),
+    Lab(Box<super::lab::Lab>),
     /// Check that this processor draws the same pictures as all others
-    Verify(Verify),
+    Verify(super::verify::Verify),
 }
 
 #[cfg(feature = "desktop")]

@@ -3,10 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use clap::builder::{PathBufValueParser, TypedValueParser};
 use marraztu::plots::{self, PagePicture};
 use marraztu_core::base::image::Picture;
-use marraztu_io::{self as io, PICTURE_FORMATS, PictureFormat, Sources};
+use marraztu_io::{self as io, PICTURE_FORMATS, Sources};
 use marraztu_lab::error::amplified;
 use marraztu_lab::flip::Perceived;
 
@@ -14,6 +13,7 @@ use super::failure::Failure;
 use super::page::{check_page, write_page};
 use super::say;
 use super::talk::print;
+use super::values::picture_file;
 
 /// The exit status if the pictures cannot be compared.
 const INCOMPARABLE: u8 = 2;
@@ -50,8 +50,7 @@ pub(crate) struct Compare {
     #[arg(long, value_name = "LIMIT", value_parser = flip)]
     flip: Option<f64>,
     /// The picture of differences to write, amplified 16 times
-    #[arg(short, long, value_name = "FILE")]
-    #[arg(value_parser = PathBufValueParser::new().try_map(picture))]
+    #[arg(short, long, value_name = "FILE", value_parser = picture_file())]
     out: Option<PathBuf>,
     /// A page to write, with the measures, a slider between the pictures, and their difference
     #[arg(long, value_name = "FILE")]
@@ -95,7 +94,7 @@ pub(super) fn compare(arguments: &Compare) -> Result<(), Failure> {
             let [a, b] = [(a, &first), (b, &second)]
                 .map(|(deep, picture)| deep.unwrap_or_else(|| widened(picture)));
             let perceived = difference(&first, &second);
-            Difference { flip: perceived.flip, ..differences(&a, &b) }
+            Difference { flip: perceived.flip, ..differences(&a, &b, u16::MAX) }
         }
     };
     let rows = difference.rows(sizes[0].area());
@@ -148,22 +147,22 @@ fn incomparable(reason: &str) -> Failure {
 
 /// Measures the differences of two pictures of one size.
 fn difference(a: &Picture, b: &Picture) -> Difference {
-    let measured = differences(a.pixels(), b.pixels());
+    let measured = differences(a.pixels(), b.pixels(), 255);
     if measured.largest == 0 {
         return measured;
     }
     Difference { flip: Perceived::new(a).difference(&Perceived::new(b)), ..measured }
 }
 
-/// Measures the differences of pixels, except for the perceived one.
+/// Measures the differences of pixels, except for the perceived one. `opaque` is the largest alpha.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^52 bytes")]
-fn differences<T: Copy + Into<u16> + Bounded>(a: &[[T; 4]], b: &[[T; 4]]) -> Difference {
+fn differences<T: Copy + Into<u16>>(a: &[[T; 4]], b: &[[T; 4]], opaque: u16) -> Difference {
     let (mut largest, mut pixels, mut squares, mut has_alpha) = (0, 0, 0_u64, false);
     for (a, b) in a.iter().zip(b) {
         let [a, b] = [a, b].map(|pixel| pixel.map(Into::<u16>::into));
         let steps: [u16; 4] = std::array::from_fn(|i| a[i].abs_diff(b[i]));
         pixels += usize::from(steps != [0; 4]);
-        has_alpha |= a[3].min(b[3]) < T::MOST;
+        has_alpha |= a[3].min(b[3]) < opaque;
         for step in steps {
             largest = largest.max(step);
             squares += u64::from(step) * u64::from(step);
@@ -175,27 +174,9 @@ fn differences<T: Copy + Into<u16> + Bounded>(a: &[[T; 4]], b: &[[T; 4]]) -> Dif
     Difference { largest, pixels, rmse, flip: 0.0 }
 }
 
-/// A channel of a pixel.
-trait Bounded {
-    /// The largest value.
-    const MOST: u16;
-}
-
-impl Bounded for u8 {
-    const MOST: u16 = 255;
-}
-
-impl Bounded for u16 {
-    const MOST: Self = Self::MAX;
-}
-
 /// Returns the pixels with 16 bits per channel.
 fn widened(picture: &Picture) -> Vec<[u16; 4]> {
     picture.pixels().iter().map(|pixel| pixel.map(|byte| u16::from(byte) * 257)).collect()
-}
-
-fn picture(path: PathBuf) -> Result<PathBuf, String> {
-    PictureFormat::of(&path).map(|_| path)
 }
 
 fn flip(text: &str) -> Result<f64, String> {

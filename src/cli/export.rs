@@ -5,8 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 use marraztu_io as io;
 
-use super::accuracy::Accuracy;
-use super::arguments::{Reading, Seeing, Surfaces};
+use super::arguments::SceneArguments;
 use super::failure::Failure;
 use super::render::staged;
 use super::talk::{Talk, note};
@@ -34,20 +33,16 @@ pub(crate) struct Export {
     #[command(flatten)]
     talk: Talk,
     #[command(flatten)]
-    reading: Reading,
-    #[command(flatten)]
-    surfaces: Surfaces,
-    #[command(flatten)]
-    seeing: Seeing,
+    scene: SceneArguments,
 }
 
 /// Exports the scene described by the arguments.
 pub(super) fn export(arguments: &Export) -> Result<(), Failure> {
-    let Export { files, out, talk, reading, surfaces, seeing } = arguments;
+    let Export { files, out, talk, scene } = arguments;
     talk.apply();
     let path = out.clone().unwrap_or_else(|| default_name(files).with_extension("glb"));
     io::check_export_target(&path)?;
-    let stage = staged(files, reading, surfaces, seeing, &Accuracy::default())?;
+    let stage = staged(files, scene)?;
     let exported = io::export(&path, &stage.scene, &stage.view, &stage.sources(files))?;
     for text in &exported.notes {
         note(text);

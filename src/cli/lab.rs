@@ -19,7 +19,7 @@ use marraztu_lab::sweep::{Question, sweep};
 use marraztu_lab::timing::WallClock;
 
 use super::accuracy::Accuracy;
-use super::arguments::{Reading, Seeing, Surfaces};
+use super::arguments::SceneArguments;
 use super::bar::Bar;
 use super::draw_along;
 use super::failure::Failure;
@@ -92,11 +92,7 @@ pub(crate) struct Lab {
     talk: Talk,
 
     #[command(flatten)]
-    reading: Reading,
-    #[command(flatten)]
-    surfaces: Surfaces,
-    #[command(flatten)]
-    seeing: Seeing,
+    scene: SceneArguments,
     #[command(flatten)]
     accuracy: Accuracy,
 }
@@ -108,8 +104,9 @@ pub(crate) fn lab(arguments: &Lab) -> Result<(), Failure> {
     if let Some(word) = &arguments.suite {
         return measure_suite(arguments, word);
     }
-    let Lab { files, reading, surfaces, seeing, accuracy, size, .. } = arguments;
-    let stage = staged(files, reading, surfaces, seeing, accuracy)?;
+    let Lab { files, scene, accuracy, size, .. } = arguments;
+    let mut stage = staged(files, scene)?;
+    stage.settings = accuracy.of(&stage.settings);
     let settings = stage.settings;
     // Check all results before the measurement, which takes minutes.
     if let Some(folder) = &arguments.out {

@@ -142,10 +142,8 @@ impl LayerOptions {
         }
     }
 
-    /// Returns the files of a picture. `path` returns the file of a layer by its name.
-    ///
-    /// # Errors
-    /// The reason, if a file cannot hold its layers.
+    /// Returns the files of a picture. `path` returns the file of a layer by its name. Fails with
+    /// the reason if a file cannot hold its layers.
     pub(crate) fn files(&self, path: impl Fn(&str) -> PathBuf) -> Result<Vec<LayerFile>, String> {
         let mut files: Vec<LayerFile> = Vec::new();
         for layer in self.list() {
@@ -179,10 +177,8 @@ pub(crate) enum Encoding {
 pub(super) const NUMBER_ENDINGS: [&str; 2] = ["exr", "npy"];
 
 impl Encoding {
-    /// Returns the encoding of the path's extension.
-    ///
-    /// # Errors
-    /// All extensions, if the name has another one.
+    /// Returns the encoding of the path's extension. Fails with all extensions if the name has
+    /// another one.
     pub(crate) fn of(path: &Path) -> Result<Self, String> {
         let ending = path.extension().map(|ending| ending.to_ascii_lowercase());
         match ending.as_deref().and_then(|ending| ending.to_str()) {
@@ -279,10 +275,8 @@ impl LayerFile {
         Ok(())
     }
 
-    /// Encodes the file, with a stamp if one is given.
-    ///
-    /// # Errors
-    /// The reason, if the format cannot hold a layer.
+    /// Encodes the file, with a stamp if one is given. Fails with the reason if the format cannot
+    /// hold a layer.
     pub(crate) fn encode(
         &self,
         content: &LayerContent<'_>,

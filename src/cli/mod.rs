@@ -76,7 +76,7 @@ pub(crate) fn run() -> ExitCode {
     let done = match arguments.command {
         Some(Headless::Render(arguments)) => render::render(&arguments),
         #[cfg(not(target_family = "wasm"))]
-        Some(Headless::Batch(arguments)) => batch::batch(&arguments),
+        Some(Headless::Batch(arguments)) => batch::batch(arguments),
         Some(Headless::Turntable(arguments)) => turntable::turntable(&arguments),
         #[cfg(not(target_family = "wasm"))]
         Some(Headless::Merge(arguments)) => merge::merge(&arguments),

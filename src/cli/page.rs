@@ -13,10 +13,7 @@ use super::failure::{Failure, usage};
 const BEGIN: &str = "<!doctype html";
 
 /// Checks that a page may be written to `path`: the name is that of a page, and an existing file is
-/// a page, or empty, and not an input.
-///
-/// # Errors
-/// If the name is another one, or the existing file.
+/// a page, or empty, and not an input. Fails if the name is another one, or the existing file.
 pub(super) fn check_page(path: &Path, sources: &Sources) -> Result<(), Failure> {
     sources.spare(path)?;
     let mut begin = Vec::new();
@@ -37,10 +34,7 @@ pub(super) fn check_page(path: &Path, sources: &Sources) -> Result<(), Failure> 
     Ok(())
 }
 
-/// Writes a page.
-///
-/// # Errors
-/// If it cannot be written; an existing file is unchanged.
+/// Writes a page. Fails if it cannot be written; an existing file is unchanged.
 pub(super) fn write_page(path: &Path, page: &str) -> Result<(), SaveError> {
     let mut file = NewFile::begin(path)?;
     file.push(page.as_bytes())?;

@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 use marraztu_lab::cost::{self, Costs, Explained, Group};
+use marraztu_lab::report::quoted;
 use marraztu_render::EffectUse;
 use serde::Serialize;
 
@@ -164,7 +165,7 @@ fn csv(explained: &Explained, costs: Option<&Costs>) -> String {
     for one in &explained.uses {
         let Row { effect, name, on, state, why, pixels, milliseconds, spread } =
             Row::new(one, costs);
-        let words = [effect, name, on, state, why].map(cell);
+        let words = [effect, name, on, state, why].map(quoted);
         let numbers = [pixels.map(|x| x.to_string()), milliseconds.map(|x| x.to_string())];
         let [pixels, milliseconds] = numbers.map(Option::unwrap_or_default);
         let spread = spread.map_or_else(String::new, |x| x.to_string());
@@ -172,15 +173,6 @@ fn csv(explained: &Explained, costs: Option<&Costs>) -> String {
         let _ = writeln!(text, "{},{pixels},{milliseconds},{spread}", words.join(","));
     }
     text
-}
-
-/// A text as a cell of CSV (RFC 4180).
-fn cell(text: &str) -> String {
-    if text.contains(['"', ',', '\n']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text.to_owned()
-    }
 }
 
 fn json(explained: &Explained, costs: Option<&Costs>) -> String {

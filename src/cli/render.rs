@@ -1,12 +1,13 @@
 //! `marraztu render`: draws a picture into a file.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use marraztu::picture_file::draw_into;
 use marraztu_core::accuracy::{AccuracyPreset, Settings, Shot};
 use marraztu_core::base::image::Size;
 use marraztu_core::edit::{framing, items, lighting};
-use marraztu_core::scene::{CameraId, Command, Fill, ItemId, Object, Pose};
+use marraztu_core::scene::{CameraId, Command, Fill, Light, Object, Pose};
 use marraztu_io::{self as io, Progress};
 use marraztu_lab::dial::{Dial, Figures, Step};
 use marraztu_lab::report::brief;
@@ -15,9 +16,8 @@ use marraztu_render::{
     LayerNames, Renderer, Unseen, fitted_exposure, plan_frame, unseen, without_ground,
 };
 
-use super::accuracy::Accuracy;
 use super::arguments::{
-    Exposure, PictureArguments, Reading, Render, Seeing, ShadowSlots, Slots, Surfaces,
+    Exposure, PictureArguments, Render, SceneArguments, Seeing, ShadowSlots, Slots, Surfaces,
 };
 use super::bar::Bar;
 use super::cameras::{CAMERAS, CameraFrame, check_cameras, write_cameras};
@@ -203,35 +203,27 @@ fn tell_unseen(renderer: &mut Renderer, shot: &Shot) {
 
 /// Loads the files, applies the options, and reports findings.
 pub(super) fn stage(picture: &PictureArguments) -> Result<Stage, Failure> {
-    let PictureArguments { files, reading, surfaces, seeing, accuracy, talk, threads, .. } =
-        picture;
+    let PictureArguments { files, scene, accuracy, talk, threads, .. } = picture;
     talk.apply();
     if threads.is_some() {
         draw_along(*threads);
     }
-    let mut stage = staged(files, reading, surfaces, seeing, &Accuracy::default())?;
+    let mut stage = staged(files, scene)?;
     stage.settings = accuracy.of_file(&stage.settings);
     Ok(stage)
 }
 
 /// Loads the scene of these files and applies the options.
-pub(crate) fn staged(
-    files: &[PathBuf],
-    reading: &Reading,
-    surfaces: &Surfaces,
-    seeing: &Seeing,
-    accuracy: &Accuracy,
-) -> Result<Stage, Failure> {
-    let mut stage = Stage::of(files, reading, Watch::Bar)?;
-    cover(&mut stage, surfaces)?;
+pub(crate) fn staged(files: &[PathBuf], scene: &SceneArguments) -> Result<Stage, Failure> {
+    let mut stage = Stage::of(files, &scene.reading, Watch::Bar)?;
+    cover(&mut stage, &scene.surfaces)?;
     for finding in &stage.findings {
         note(finding);
     }
-    look(&mut stage, seeing, &Aim::Options)?;
+    look(&mut stage, &scene.seeing, &Aim::Options)?;
     for text in &stage.notes {
         note(text);
     }
-    stage.settings = accuracy.of(&stage.settings);
     Ok(stage)
 }
 
@@ -292,10 +284,18 @@ pub(super) fn look(stage: &mut Stage, seeing: &Seeing, aim: &Aim) -> Result<(), 
         Aim::Pose(pose, half_angle) => place_camera(stage, *pose, *half_angle)?,
     }
     if let Some(Slots(slots)) = &seeing.lights {
-        light(stage, slots)?;
+        check_slots(stage, slots, |_| true, "")?;
+        switch(stage, |light| slots.contains(&light.slot), |light| &mut light.on)?;
     }
-    if let Some(slots) = &seeing.shadows {
-        shade(stage, slots)?;
+    match &seeing.shadows {
+        Some(ShadowSlots::All) => {
+            switch(stage, Light::can_cast_shadows, |light| &mut light.shadows)?;
+        }
+        Some(ShadowSlots::These(Slots(slots))) => {
+            check_slots(stage, slots, Light::can_cast_shadows, " that can cast shadows")?;
+            switch(stage, |light| slots.contains(&light.slot), |light| &mut light.shadows)?;
+        }
+        None => {}
     }
     if let Some(background) = seeing.background {
         stage.change(Command::Background(background))?;
@@ -364,43 +364,29 @@ fn place_camera(stage: &mut Stage, pose: Pose, half_angle: Option<f64>) -> Resul
     stage.change(framing::from_pose(&stage.scene, &stage.view, pose, half_angle))
 }
 
-/// Switches the lights in these slots on and all others off.
-fn light(stage: &mut Stage, slots: &std::collections::BTreeSet<u32>) -> Result<(), Failure> {
-    let lights: Vec<_> =
-        stage.scene.lights.iter().map(|(id, light)| (id, light.slot, light.on)).collect();
-    let has = |slot: &u32| lights.iter().any(|(_, other, _)| other == slot);
-    if let Some(empty) = slots.iter().find(|slot| !has(slot)) {
-        return Err(Failure::Absent(format!("the scene has no light in slot {empty}")));
-    }
-    for (id, slot, on) in lights {
-        if on != slots.contains(&slot) {
-            stage.change(items::toggle_shown(&stage.scene, ItemId::Light(id))?)?;
-        }
-    }
-    Ok(())
+/// Checks that there is a light in each of these slots, of which `suits` is true.
+fn check_slots(
+    stage: &Stage,
+    slots: &BTreeSet<u32>,
+    suits: impl Fn(&Light) -> bool,
+    what: &str,
+) -> Result<(), Failure> {
+    let has =
+        |slot: u32| stage.scene.lights.iter().any(|(_, light)| light.slot == slot && suits(light));
+    slots.iter().find(|slot| !has(**slot)).map_or(Ok(()), |slot| {
+        Err(Failure::Absent(format!("the scene has no light in slot {slot}{what}")))
+    })
 }
 
-/// Switches the shadows of these lights on and all others off.
-fn shade(stage: &mut Stage, slots: &ShadowSlots) -> Result<(), Failure> {
-    let lights: Vec<_> = stage.scene.lights.iter().map(|(id, light)| (id, light.clone())).collect();
-    // Check all slots first, so that an error changes nothing.
-    if let ShadowSlots::These(Slots(slots)) = slots {
-        let able = |slot: &u32| {
-            lights.iter().any(|(_, light)| light.slot == *slot && light.can_cast_shadows())
-        };
-        if let Some(slot) = slots.iter().find(|slot| !able(slot)) {
-            let reason = format!("the scene has no light in slot {slot} that can cast shadows");
-            return Err(Failure::Absent(reason));
-        }
-    }
-    for (id, light) in lights {
-        let to = match slots {
-            ShadowSlots::All => light.can_cast_shadows(),
-            ShadowSlots::These(Slots(slots)) => slots.contains(&light.slot),
-        };
-        if light.shadows != to {
-            stage.change(items::change_light(&stage.scene, id, |light| light.shadows = to)?)?;
-        }
+/// Switches a property of all lights on or off.
+fn switch(
+    stage: &mut Stage,
+    to: impl Fn(&Light) -> bool,
+    property: fn(&mut Light) -> &mut bool,
+) -> Result<(), Failure> {
+    let to: Vec<_> = stage.scene.lights.iter().map(|(id, light)| (id, to(light))).collect();
+    for (id, to) in to {
+        stage.change(items::change_light(&stage.scene, id, |light| *property(light) = to)?)?;
     }
     Ok(())
 }

@@ -13,7 +13,7 @@ use super::layers::{Encoding, FIELD, LayerContent, LayerFile, LayerOptions};
 use super::stage::is_scene;
 use super::talk::write_out;
 use super::terminal::{TerminalForm, cells};
-use super::values::{is_standard, is_terminal};
+use super::values::{is_standard, is_terminal, stem};
 
 /// The picture's name if no input file has a name.
 const UNNAMED: &str = "scene";
@@ -120,7 +120,12 @@ impl Target {
         match (self, content.color) {
             (Self::Files(files), _) => {
                 // If a layer cannot be encoded, no file is written.
-                let encoded = files.iter().map(|file| encoded(file, content, options));
+                let png = options.png();
+                let encoded = files.iter().map(|file| {
+                    file.encode(content, &png, None).map_err(|reason| {
+                        Failure::Absent(format!("{}: {reason}", file.path.display()))
+                    })
+                });
                 let encoded = encoded.collect::<Result<Vec<_>, _>>()?;
                 for (file, encoded) in files.iter().zip(&encoded) {
                     io::save_encoded(&file.path, encoded)?;
@@ -138,27 +143,12 @@ impl Target {
     }
 }
 
-fn encoded(
-    file: &LayerFile,
-    content: &LayerContent<'_>,
-    options: &LayerOptions,
-) -> Result<Vec<u8>, Failure> {
-    let wrong = |reason| Failure::Absent(format!("{}: {reason}", file.path.display()));
-    file.encode(content, &options.png(), None).map_err(wrong)
-}
-
 /// Returns the name of the scene or first model with .png, in the current folder.
 pub(super) fn default_name(files: &[PathBuf]) -> PathBuf {
     let named = || files.iter().filter(|file| !is_standard(file));
     let file = named().find(|file| is_scene(file)).or_else(|| named().next());
-    let name = file.and_then(|file| file.file_name()).map(Path::new);
-    let stem = name.and_then(|name| match name.extension() {
-        Some(ending) if ending.eq_ignore_ascii_case("gz") => {
-            Path::new(name.file_stem()?).file_stem()
-        }
-        _ => name.file_stem(),
-    });
-    let mut name = stem.unwrap_or(UNNAMED.as_ref()).to_owned();
+    let stem = file.map(|file| stem(file)).filter(|stem| !stem.is_empty());
+    let mut name = stem.unwrap_or_else(|| UNNAMED.into());
     name.push(".png");
     PathBuf::from(name)
 }

@@ -76,10 +76,7 @@ impl TerminalForm {
         }
     }
 
-    /// Encodes a picture.
-    ///
-    /// # Errors
-    /// The reason, if it cannot be encoded.
+    /// Encodes a picture. Fails with the reason if it cannot be encoded.
     pub(crate) fn encode(self, picture: &Picture) -> Result<String, String> {
         match self {
             Self::Kitty => kitty(picture),

@@ -10,7 +10,7 @@ use std::thread::Builder;
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use marraztu_core::accuracy::{AXES, Settings};
+use marraztu_core::accuracy::{Samples, Settings};
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_io::{self as io, Input, PICTURE_FORMATS, Progress, Sources};
 use marraztu_render::accel::Accelerated as _;
@@ -97,20 +97,14 @@ fn draw([file, out]: &[PathBuf; 2], size: Size, pictures: &Sender<Result<Picture
         }
     };
     let mut renderer = Renderer::default();
-    for samples in ["1", "4"] {
-        let settings = with_samples(&stage.settings, samples);
+    for samples in [Samples::One, Samples::Four] {
+        let settings = Settings { samples, ..stage.settings };
         let stage = Stage { settings, ..stage.clone() };
         let picture = without_ground(&mut renderer, &stage.shot(size));
         if pictures.send(Ok(picture)).is_err() {
             return;
         }
     }
-}
-
-fn with_samples(settings: &Settings, word: &str) -> Settings {
-    let axis = AXES.iter().find(|axis| axis.key == "samples");
-    let choice = axis.and_then(|axis| axis.choice(word));
-    choice.map_or(*settings, |choice| choice.of(settings))
 }
 
 /// Loads the file, whatever its name.

@@ -1,9 +1,12 @@
 //! Parses option values.
 
-use std::path::Path;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
 
+use clap::builder::{PathBufValueParser, TypedValueParser};
 use marraztu_core::base::color::Color;
 use marraztu_core::base::image::Size;
+use marraztu_io::PictureFormat;
 
 /// The longest side of a picture.
 const LONGEST_SIDE: usize = 16_384;
@@ -16,6 +19,21 @@ pub(crate) fn is_standard(file: &Path) -> bool {
 /// Returns whether a file name refers to the terminal.
 pub(crate) fn is_terminal(file: &Path) -> bool {
     file == Path::new("terminal")
+}
+
+/// Returns the name of a file without its extension; `.obj.gz` is one extension.
+pub(super) fn stem(file: &Path) -> OsString {
+    let name = Path::new(file.file_name().unwrap_or_default());
+    let inner = match name.extension() {
+        Some(ending) if ending.eq_ignore_ascii_case("gz") => name.with_extension(""),
+        _ => name.to_owned(),
+    };
+    inner.file_stem().unwrap_or_default().to_owned()
+}
+
+/// Returns a parser of the names of pictures, which checks their extensions.
+pub(super) fn picture_file() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|path| PictureFormat::of(&path).map(|_| path))
 }
 
 /// Parses a picture size: "800x600", or "800" for a square.

@@ -3,14 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use clap::builder::{PathBufValueParser, TypedValueParser};
 use marraztu::plots::{SheetCell, contact_sheet};
 use marraztu_core::base::image::Size;
-use marraztu_io::{self as io, PictureFormat, describe_model};
+use marraztu_io::{self as io, describe_model};
 use marraztu_render::{Renderer, plan_frame};
 
 use super::accuracy::Accuracy;
-use super::arguments::{Reading, Seeing, Surfaces};
+use super::arguments::SceneArguments;
 use super::batch::views::parse_views;
 use super::failure::{Failure, usage};
 use super::info::scene_text;
@@ -18,7 +17,7 @@ use super::render::{cover, look};
 use super::stage::{Stage, Watch};
 use super::talk::{Talk, note, print};
 use super::target::default_name;
-use super::values::size;
+use super::values::{picture_file, size};
 
 /// The most facts on the sheet; standard output has all of them.
 const MOST_FACTS: usize = 24;
@@ -36,8 +35,7 @@ pub(crate) struct Views {
     /// A model (.obj, .stl, also .gz) or a scene (.marraztu); "-" is standard input
     file: PathBuf,
     /// The sheet to write [default: the name of the model with -views.png, in the current folder]
-    #[arg(short, long, value_name = "FILE")]
-    #[arg(value_parser = PathBufValueParser::new().try_map(picture))]
+    #[arg(short, long, value_name = "FILE", value_parser = picture_file())]
     out: Option<PathBuf>,
     /// Width and height of each view in pixels; one number for a square
     #[arg(
@@ -58,19 +56,15 @@ pub(crate) struct Views {
     #[command(flatten)]
     talk: Talk,
     #[command(flatten)]
-    reading: Reading,
-    #[command(flatten)]
-    surfaces: Surfaces,
-    #[command(flatten)]
-    seeing: Seeing,
+    scene: SceneArguments,
     #[command(flatten)]
     accuracy: Accuracy,
 }
 
 /// Draws the sheet.
 pub(super) fn views(arguments: &Views) -> Result<(), Failure> {
-    let Views { file, out, size, views, columns, talk, reading, surfaces, seeing, accuracy } =
-        arguments;
+    let Views { file, out, size, views, columns, talk, scene, accuracy } = arguments;
+    let SceneArguments { reading, surfaces, seeing } = scene;
     talk.apply();
     if seeing.camera.is_some() || seeing.from.is_some() {
         return Err(usage("--views replaces --camera and --from"));
@@ -121,8 +115,4 @@ fn default_sheet(files: &[PathBuf]) -> PathBuf {
     let name = default_name(files);
     let stem = name.file_stem().unwrap_or_default().to_string_lossy();
     PathBuf::from(format!("{stem}-views.png"))
-}
-
-fn picture(path: PathBuf) -> Result<PathBuf, String> {
-    PictureFormat::of(&path).map(|_| path)
 }

@@ -136,7 +136,6 @@ pub fn png(report: &Report, look: Look) -> Result<Picture, PlotError> {
 }
 
 /// Returns the names in the overview with their boxes in the plot.
-#[must_use]
 pub fn overview_names(report: &Report) -> Vec<(String, TextBox)> {
     let sheet = Sheet::new(report, Look::Light);
     let frame = inner(sheet.overview_rect());

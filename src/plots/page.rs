@@ -17,7 +17,6 @@ pub fn sections(reports: &[Report]) -> impl Iterator<Item = (&'static Axis, Vec<
 }
 
 /// Returns the name of the plot of an axis on a scene of the suite: "depth-first".
-#[must_use]
 pub fn plot_name(axis: &Axis, report: &Report) -> String {
     let scene = report.scene.split_whitespace().last().unwrap_or_default();
     format!("{}-{scene}", axis.key)
@@ -41,7 +40,6 @@ fn basis(reports: &[Report]) -> String {
 }
 
 /// Writes the page as Markdown. `picture` returns the URL of an axis's plot, by its name.
-#[must_use]
 pub fn page_markdown(reports: &[Report], picture: &dyn Fn(&str) -> String) -> String {
     let mut text = format!("{}\n", basis(reports));
     for report in reports {

@@ -19,7 +19,6 @@ pub struct PageCell {
 
 /// Writes a page about two pictures with a slider between them, the measures as rows of a table,
 /// and the picture of their differences.
-#[must_use]
 pub fn compare_page(
     title: &str,
     rows: &[[String; 2]],
@@ -43,7 +42,6 @@ pub fn compare_page(
 }
 
 /// Writes a page with the pictures of a batch in rows, the missing ones first.
-#[must_use]
 pub fn sheet_page(title: &str, cells: &[PageCell]) -> String {
     let mut text = head(title, SHEET_STYLE);
     let missing = cells.iter().filter_map(|cell| Some((&cell.label, cell.picture.as_ref().err()?)));

@@ -9,43 +9,24 @@ use marraztu_core::accuracy::Shot;
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{
-    Camera, CameraId, Command, Item, Lens, Light, LightId, LoadOptions, MaterialChoice, Mesh,
-    MeshSource, Model, NONE, Object, ObjectId, Part, Pose, PresetId, Scene, SourceCorner, Tracked,
-    View,
+    Camera, CameraId, Command, Item, Light, LightId, MaterialChoice, Mesh, MeshSource, Model,
+    Object, ObjectId, Part, PresetId, Scene, SourceCorner, Tracked, View,
 };
 use marraztu_render::Renderer;
 use marraztu_render::plan_frame;
 
 /// Builds a model from polygons of vertex indices.
 pub(crate) fn model(name: &str, positions: &[[f32; 3]], polygons: &[&[u32]]) -> Shared<Model> {
-    model_of(
-        name,
-        MeshSource {
-            positions: positions.to_vec(),
-            corners: polygons
-                .iter()
-                .flat_map(|polygon| polygon.iter())
-                .map(|&position| SourceCorner { position, uv: NONE, normal: NONE })
-                .collect(),
-            arities: polygons.iter().map(|polygon| polygon.len() as u32).collect(),
-            polygon_parts: vec![0; polygons.len()],
-            parts: vec![Part { name: name.to_owned(), material: None }],
-            ..MeshSource::default()
-        },
-    )
+    let corners = polygons.iter().copied().flatten().copied().map(SourceCorner::bare);
+    let arities = polygons.iter().map(|polygon| polygon.len() as u32).collect();
+    let parts = vec![Part { name: name.to_owned(), material: None }];
+    let positions = positions.to_vec();
+    model_of(name, MeshSource { positions, parts, ..MeshSource::of_polygons(corners, arities) })
 }
 
 /// Builds a model from a mesh source.
 pub(crate) fn model_of(name: &str, source: MeshSource) -> Shared<Model> {
-    Shared::new(Model {
-        name: name.to_owned(),
-        source: None,
-        companions: Vec::new(),
-        options: LoadOptions::default(),
-        mesh: Mesh::new(source).expect("tests make good meshes"),
-        materials: Vec::new(),
-        edge_color: None,
-    })
+    Shared::new(Model::of_mesh(name, Mesh::new(source).expect("tests make good meshes")))
 }
 
 /// A cube from -1 to 1, with outward faces.
@@ -92,14 +73,8 @@ pub(crate) fn ball(rings: u32) -> Shared<Model> {
 
 /// A camera at (0, 0, 400), looking along -Z.
 pub(crate) fn camera() -> Camera {
-    Camera {
-        name: "camera 1".to_owned(),
-        visible: true,
-        model: cube(),
-        material: MaterialChoice::Preset(PresetId::OBSIDIAN),
-        pose: Tracked::new(Pose::facing_minus_z(DVec3::new(0.0, 0.0, 400.0))),
-        lens: Lens::default(),
-    }
+    let obsidian = MaterialChoice::Preset(PresetId::OBSIDIAN);
+    Camera::new("camera 1", cube(), obsidian, DVec3::new(0.0, 0.0, 400.0))
 }
 
 /// Builds a scene with the five lights and these models at their placements, oldest first.

@@ -3,9 +3,8 @@
 use glam::{DMat4, DVec3};
 use marraztu_core::base::Shared;
 use marraztu_core::scene::{
-    Camera, Command, Item, ItemId, Lens, Light, LightId, LoadOptions, MaterialChoice, Mesh,
-    MeshSource, Model, NONE, Object, ObjectId, Part, Pose, PresetId, Scene, SourceCorner, Tracked,
-    View,
+    Camera, Command, Item, ItemId, Light, LightId, MaterialChoice, Mesh, MeshSource, Model, NONE,
+    Object, ObjectId, Part, PresetId, Scene, SourceCorner, Tracked, View,
 };
 
 /// Two triangles, each its own part. The mean of the vertices is (1, 2, 3), and every vertex is 5
@@ -21,28 +20,14 @@ pub(crate) fn model() -> Shared<Model> {
         parts: vec![part("lower"), part("upper")],
         ..MeshSource::default()
     };
-    Shared::new(Model {
-        name: "plate".to_owned(),
-        source: None,
-        companions: Vec::new(),
-        options: LoadOptions::default(),
-        mesh: Mesh::new(source).unwrap(),
-        materials: Vec::new(),
-        edge_color: None,
-    })
+    Shared::new(Model::of_mesh("plate", Mesh::new(source).unwrap()))
 }
 
 /// A camera at (0, 0, 400); objects 3, 2 and 1 in this order, at (-100, 0, 0), (100, 0, 0) and
 /// (0, 0, -400), with 3 selected; the five lights as 4 to 8, with the sun selected.
 pub(crate) fn three_objects() -> (Scene, View) {
-    let camera = Camera {
-        name: "camera 1".to_owned(),
-        visible: true,
-        model: model(),
-        material: MaterialChoice::Preset(PresetId::OBSIDIAN),
-        pose: Tracked::new(Pose::facing_minus_z(DVec3::Z * 400.0)),
-        lens: Lens::default(),
-    };
+    let obsidian = MaterialChoice::Preset(PresetId::OBSIDIAN);
+    let camera = Camera::new("camera 1", model(), obsidian, DVec3::Z * 400.0);
     let mut scene = Scene::with_camera(camera);
     let places = [DVec3::Z * -400.0, DVec3::X * 100.0, DVec3::X * -100.0];
     for (id, place) in (1..).zip(places) {

@@ -8,8 +8,7 @@ use marraztu_core::base::color::Color;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::base::rng::Rng;
 use marraztu_core::scene::{
-    Fill, List, MeshSource, Object, ObjectId, Part, Pose, Sides, SourceCorner, Surface, Tracked,
-    View,
+    Fill, List, MeshSource, Object, ObjectId, Pose, Sides, SourceCorner, Surface, Tracked, View,
 };
 use marraztu_lab::pictures::flat::{self, Flat};
 use marraztu_render::Renderer;
@@ -507,13 +506,9 @@ fn case_18_objects_behind_the_observer_are_invisible() {
 /// A texture with 256 texels in a row. The colour of a texel is its index.
 pub(super) fn ruler(scale: f64) -> marraztu_core::base::Shared<marraztu_core::scene::Texture> {
     let texels = (0..=255).map(|i| [i, i, i, 255]).collect();
-    marraztu_core::base::Shared::new(marraztu_core::scene::Texture {
-        source: std::path::PathBuf::new(),
-        picture: Picture::from_pixels(Size::new(256, 1), texels).unwrap().into(),
-        wrap: marraztu_core::scene::Wrap::Repeat,
-        offset: [0.0; 2],
-        scale: [scale, 1.0],
-    })
+    let picture = Picture::from_pixels(Size::new(256, 1), texels).unwrap();
+    let once = marraztu_core::scene::Texture::new("", picture);
+    marraztu_core::scene::Texture { scale: [scale, 1.0], ..once }.into()
 }
 
 /// A triangle with a texture coordinate u at each corner.
@@ -525,13 +520,14 @@ pub(super) fn textured(
     let source = MeshSource {
         positions: corners.map(|corner| corner.as_vec3().to_array()).to_vec(),
         uvs: u.map(|u| [u, 0.5]).to_vec(),
-        corners: [0, 1, 2]
-            .map(|i| SourceCorner { position: i, uv: i, normal: marraztu_core::scene::NONE })
-            .to_vec(),
-        arities: vec![3],
-        polygon_parts: vec![0],
-        parts: vec![Part { name: "triangle".to_owned(), material: None }],
-        ..MeshSource::default()
+        ..MeshSource::of_polygons(
+            [0, 1, 2].map(|i| SourceCorner {
+                position: i,
+                uv: i,
+                normal: marraztu_core::scene::NONE,
+            }),
+            vec![3],
+        )
     };
     let (mut scene, view) = scene(&[(model_of("triangle", source), DMat4::IDENTITY)]);
     edit(&mut scene, ObjectId(10), |object| {

@@ -14,13 +14,7 @@ use super::figures::Figure;
 fn glowing(ambient: [f64; 3], lights: &[Color]) -> (Scene, View) {
     let (mut scene, view) = scene(&[(square(), at(300.0, 0.0, 0.0, 0.0))]);
     edit(&mut scene, ObjectId(10), |object| {
-        object.material = MaterialChoice::Own(Material {
-            ambient,
-            diffuse: [0.0; 3],
-            specular: [0.0; 3],
-            exponent: 1.0,
-            emission: [0.0; 3],
-        });
+        object.material = MaterialChoice::Own(Material::matte(ambient, [0.0; 3]));
     });
     let light = |(color, id): (&Color, u32)| {
         let light = Light::new("ambient", id, LightKind::Ambient);

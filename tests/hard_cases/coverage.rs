@@ -6,7 +6,9 @@ use marraztu_core::accuracy::Settings;
 use marraztu_core::accuracy::Shot;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::base::rng::Rng;
-use marraztu_core::scene::{LoadOptions, MeshSource, Object, ObjectId, Projection, View, Winding};
+use marraztu_core::scene::{
+    LoadOptions, MeshSource, Object, ObjectId, Projection, SourceCorner, View, Winding,
+};
 use marraztu_lab::instructions::levels;
 use marraztu_lab::pictures;
 use marraztu_lab::pictures::flat::{self, Flat};
@@ -276,12 +278,8 @@ fn case_23_the_fronts_of_a_closed_body_are_seen_where_its_backs_are() {
                 if winding == Winding::Turned {
                     corners.reverse();
                 }
-                source.arities.push(corners.len() as u32);
-                source.polygon_parts.push(0);
-                let none = marraztu_core::scene::NONE;
-                source.corners.extend(corners.into_iter().map(|position| {
-                    marraztu_core::scene::SourceCorner { position, uv: none, normal: none }
-                }));
+                let corners = corners.into_iter().map(SourceCorner::bare);
+                source.push_polygon(&corners.collect::<Vec<_>>());
             }
             let (scene, view) = scene(&[(model_of("body", source), placement)]);
             let view = View { marks: false, projection, ..view };
@@ -321,12 +319,9 @@ fn case_24_an_edge_that_a_corner_of_another_face_splits_is_found_and_said() {
             ..MeshSource::default()
         };
         for polygon in 0..mesh.polygon_count() as u32 {
-            source.arities.push(mesh.polygon(polygon).len() as u32);
-            source.polygon_parts.push(0);
-            source.corners.extend(mesh.polygon(polygon).iter().map(|corner| {
-                let (position, none) = (corner.position, marraztu_core::scene::NONE);
-                marraztu_core::scene::SourceCorner { position, uv: none, normal: none }
-            }));
+            let corners = mesh.polygon(polygon).iter();
+            let corners = corners.map(|corner| SourceCorner::bare(corner.position));
+            source.push_polygon(&corners.collect::<Vec<_>>());
         }
         let plate = model_of("plate", source);
         let mut gaps = 0;

@@ -6,8 +6,7 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::base::rng::Rng;
 use marraztu_core::scene::{
-    Material, MaterialChoice, MeshSource, NONE, ObjectId, Part, SourceCorner, Surface, Texture,
-    View, Wrap,
+    Material, MaterialChoice, MeshSource, ObjectId, SourceCorner, Surface, Texture, View, Wrap,
 };
 use marraztu_lab::pictures::flat::{self, Flat};
 use marraztu_render::Renderer;
@@ -125,11 +124,7 @@ fn painted(corners: [Snapped; 3], colors: [[f32; 3]; 3], side: usize) -> Picture
     let source = MeshSource {
         positions: corners.map(|c| flat::place(c, 512.0, side).as_vec3().to_array()).to_vec(),
         colors: colors.to_vec(),
-        corners: [0, 1, 2].map(|i| SourceCorner { position: i, uv: NONE, normal: NONE }).to_vec(),
-        arities: vec![3],
-        polygon_parts: vec![0],
-        parts: vec![Part { name: "triangle".to_owned(), material: None }],
-        ..MeshSource::default()
+        ..MeshSource::of_polygons([0, 1, 2].map(SourceCorner::bare), vec![3])
     };
     edit(&mut scene, ObjectId(1), |object| object.model = model_of("painted", source));
     flat::draw(&(scene, view), side, &mut Renderer::default())
@@ -139,15 +134,9 @@ fn painted(corners: [Snapped; 3], colors: [[f32; 3]; 3], side: usize) -> Picture
 fn case_39_places_beyond_the_texture_are_brought_back_into_it() {
     // Two texels: the shown colour tells which half of the texture was sampled.
     let texture = |wrap: Wrap| {
-        Shared::new(Texture {
-            source: std::path::PathBuf::new(),
-            picture: Picture::from_pixels(Size::new(2, 1), vec![[10, 0, 0, 255], [20, 0, 0, 255]])
-                .unwrap()
-                .into(),
-            wrap,
-            offset: [0.0; 2],
-            scale: [1.0; 2],
-        })
+        let texels = vec![[10, 0, 0, 255], [20, 0, 0, 255]];
+        let picture = Picture::from_pixels(Size::new(2, 1), texels).unwrap();
+        Shared::new(Texture { wrap, ..Texture::new("", picture) })
     };
     let corners = [(-90.0, -90.0), (90.0, -90.0), (0.0, 90.0)].map(|(x, y)| DVec3::new(x, y, 0.0));
     let mut wrong = 0;
@@ -272,13 +261,7 @@ fn case_40_the_same_light_at_all_corners_stays_that_light() {
         let (mut scene, view) = scene(&[(face, DMat4::IDENTITY)]);
         edit(&mut scene, ObjectId(10), |object| {
             let (ambient, none) = ([factor; 3], [0.0; 3]);
-            let dull = Material {
-                ambient,
-                diffuse: none,
-                specular: none,
-                exponent: 1.0,
-                emission: [0.0; 3],
-            };
+            let dull = Material::matte(ambient, none);
             object.material = MaterialChoice::Own(dull);
         });
         let settings = Settings { light: LightAt::Vertex, ..Settings::default() };
@@ -313,13 +296,10 @@ fn case_41_a_quad_is_cut_from_its_first_corner_to_its_third() {
         let source = MeshSource {
             positions: corners.map(|(x, y)| [x, y, 0.0]).to_vec(),
             colors: vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
-            corners: (0..4)
-                .map(|i| SourceCorner { position: (i + turned as u32) % 4, uv: NONE, normal: NONE })
-                .collect(),
-            arities: vec![4],
-            polygon_parts: vec![0],
-            parts: vec![Part { name: "quad".to_owned(), material: None }],
-            ..MeshSource::default()
+            ..MeshSource::of_polygons(
+                (0..4).map(|i| SourceCorner::bare((i + turned as u32) % 4)),
+                vec![4],
+            )
         };
         let (mut scene, view) = scene(&[(model_of("quad", source), DMat4::IDENTITY)]);
         edit(&mut scene, ObjectId(10), |object| object.surface = Surface::Texture);

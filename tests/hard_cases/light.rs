@@ -8,7 +8,7 @@ use marraztu_core::base::rng::Rng;
 use marraztu_core::edit::{GesturePhase, placement};
 use marraztu_core::scene::{
     Aim, Command, ItemId, Light, LightId, LightKind, Material, MaterialChoice, MeshSource, NONE,
-    ObjectId, Orbit, Part, Scene, SourceCorner, SpotOwner, Tracked, View,
+    ObjectId, Orbit, Scene, SourceCorner, SpotOwner, Tracked, View,
 };
 use marraztu_lab::instructions::levels;
 use marraztu_render::Renderer;
@@ -41,11 +41,9 @@ fn with_lamps(scene: &mut Scene, lamps: &[OracleLight]) {
 /// A grey material.
 fn stuff(matter: &OracleMaterial) -> MaterialChoice {
     MaterialChoice::Own(Material {
-        ambient: [matter.ambient; 3],
-        diffuse: [matter.diffuse; 3],
         specular: [matter.specular; 3],
         exponent: matter.exponent,
-        emission: [0.0; 3],
+        ..Material::matte([matter.ambient; 3], [matter.diffuse; 3])
     })
 }
 
@@ -87,11 +85,10 @@ impl Bent {
         let source = MeshSource {
             positions: self.corners.map(|c| c.as_vec3().to_array()).to_vec(),
             normals: self.normals.map(|n| n.as_vec3().to_array()).to_vec(),
-            corners: [0, 1, 2].map(|i| SourceCorner { position: i, uv: NONE, normal: i }).to_vec(),
-            arities: vec![3],
-            polygon_parts: vec![0],
-            parts: vec![Part { name: "bent".to_owned(), material: None }],
-            ..MeshSource::default()
+            ..MeshSource::of_polygons(
+                [0, 1, 2].map(|i| SourceCorner { position: i, uv: NONE, normal: i }),
+                vec![3],
+            )
         };
         let (mut scene, view) = scene(&[(model_of("bent", source), DMat4::IDENTITY)]);
         edit(&mut scene, ObjectId(10), |object| object.material = stuff(matter));
@@ -550,11 +547,9 @@ fn case_50_the_order_of_lights_does_not_show() {
     // Three channels with different digits: about one byte in 100,000 is so close to a rounding
     // border that the last bit of a sum decides.
     let material = Material {
-        ambient: [0.03, 0.041, 0.023],
-        diffuse: [0.11, 0.13, 0.17],
         specular: [0.07, 0.05, 0.09],
         exponent: 9.0,
-        emission: [0.0; 3],
+        ..Material::matte([0.03, 0.041, 0.023], [0.11, 0.13, 0.17])
     };
     edit(&mut scene, ObjectId(10), |object| object.material = MaterialChoice::Own(material));
     with_lamps(&mut scene, &lamps);
@@ -597,11 +592,10 @@ fn case_51_light_is_held_to_full_once_and_after_the_texture() {
     let source = MeshSource {
         positions: vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]],
         uvs: vec![[0.502, 0.5]],
-        corners: [0, 1, 2].map(|i| SourceCorner { position: i, uv: 0, normal: NONE }).to_vec(),
-        arities: vec![3],
-        polygon_parts: vec![0],
-        parts: vec![Part { name: "half".to_owned(), material: None }],
-        ..MeshSource::default()
+        ..MeshSource::of_polygons(
+            [0, 1, 2].map(|i| SourceCorner { position: i, uv: 0, normal: NONE }),
+            vec![3],
+        )
     };
     edit(&mut scene, ObjectId(10), |object| {
         object.material = stuff(&matter);

@@ -5,8 +5,8 @@ use marraztu_core::accuracy::{AXES, Filter, Settings, ShadowMethod, Terminator};
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{
-    FileMaterial, LoadOptions, MapKind, Material, MaterialChoice, Mesh, MeshSource, Model, NONE,
-    ObjectId, Part, SourceCorner, SurfaceMap, SurfaceMaps, Texture, Undrawn, Wrap,
+    FileMaterial, MapKind, Material, MaterialChoice, Mesh, MeshSource, Model, NONE, ObjectId, Part,
+    SourceCorner, SurfaceMap, SurfaceMaps, Texture,
 };
 
 use super::common::{at, ball, cube, draw, edit, square};
@@ -126,45 +126,19 @@ fn stencil() -> Shared<Model> {
     let field = |i: usize| if (i % 8 + i / 8).is_multiple_of(2) { 255 } else { 0 };
     let texels = (0..64).map(|i| [field(i), field(i), field(i), 255]).collect();
     let picture = Picture::from_pixels(Size::new(8, 8), texels).expect("all its texels");
-    let (offset, scale, wrap) = ([0.0; 2], [1.0; 2], Wrap::Repeat);
-    let source = std::path::PathBuf::new();
-    let texture = Shared::new(Texture { source, picture: picture.into(), wrap, offset, scale });
+    let texture = Shared::new(Texture::new("", picture));
     let maps = SurfaceMaps::from([(MapKind::Opacity, SurfaceMap { texture, gain: 1.0 })]);
     let corner = |position| SourceCorner { position, uv: position, normal: NONE };
     let source = MeshSource {
         positions: vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]],
         uvs: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
-        corners: (0..4).map(corner).collect(),
-        arities: vec![4],
-        polygon_parts: vec![0],
         parts: vec![Part { name: "sheet".to_owned(), material: Some(0) }],
-        ..MeshSource::default()
+        ..MeshSource::of_polygons((0..4).map(corner), vec![4])
     };
-    let material = Material {
-        ambient: [0.0; 3],
-        diffuse: [1.0; 3],
-        specular: [0.0; 3],
-        exponent: 1.0,
-        emission: [0.0; 3],
-    };
-    let (name, opacity, texture, unlit) = ("sheet".to_owned(), 1.0, None, false);
-    Shared::new(Model {
-        name: name.clone(),
-        source: None,
-        companions: Vec::new(),
-        options: LoadOptions::default(),
-        mesh: Mesh::new(source).expect("a good mesh"),
-        materials: vec![FileMaterial {
-            name,
-            material,
-            opacity,
-            texture,
-            maps,
-            unlit,
-            undrawn: Undrawn::new(),
-        }],
-        edge_color: None,
-    })
+    let material = Material::matte([0.0; 3], [1.0; 3]);
+    let material = FileMaterial { maps, ..FileMaterial::new("sheet", material) };
+    let mesh = Mesh::new(source).expect("a good mesh");
+    Shared::new(Model { materials: vec![material], ..Model::of_mesh("sheet", mesh) })
 }
 
 #[test]

@@ -47,13 +47,7 @@ impl Shade {
         let light =
             Light { on, shadows, attenuation, ..Light::new("light", 1, self.light.clone()) };
         scene.lights = [(LightId(1), light)].into_iter().collect();
-        let white = Material {
-            ambient: [0.0; 3],
-            diffuse: [1.0; 3],
-            specular: [0.0; 3],
-            exponent: 1.0,
-            emission: [0.0; 3],
-        };
+        let white = Material::matte([0.0; 3], [1.0; 3]);
         for id in 0..self.models.len() as u32 {
             edit(&mut scene, ObjectId(10 + id), |object| {
                 object.material = MaterialChoice::Own(white);

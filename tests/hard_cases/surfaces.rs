@@ -6,9 +6,9 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::color::Color;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{
-    FileMaterial, Light, LightId, LightKind, LoadOptions, MapKind, Material, MaterialChoice, Mesh,
-    MeshSource, Model, NONE, ObjectId, Part, Scene, SourceCorner, Surface, SurfaceMap, SurfaceMaps,
-    Texture, Tracked, Undrawn, View, Wrap,
+    FileMaterial, Light, LightId, LightKind, MapKind, Material, MaterialChoice, Mesh, MeshSource,
+    Model, NONE, ObjectId, Part, Scene, SourceCorner, Surface, SurfaceMap, SurfaceMaps, Texture,
+    Tracked, View, Wrap,
 };
 use marraztu_render::plan_frame;
 
@@ -29,9 +29,7 @@ fn greys(width: usize, height: usize, of: impl Fn(usize, usize) -> u8) -> Shared
 }
 
 fn picture(picture: Picture, wrap: Wrap) -> Shared<Texture> {
-    let source = std::path::PathBuf::new();
-    let (offset, scale) = ([0.0; 2], [1.0; 2]);
-    Shared::new(Texture { source, picture: picture.into(), wrap, offset, scale })
+    Shared::new(Texture { wrap, ..Texture::new("", picture) })
 }
 
 /// A sheet of two squares in the plane z = 0, side by side, with texture coordinates at their
@@ -43,40 +41,19 @@ fn sheet(uvs: [[[f32; 2]; 4]; 2], maps: SurfaceMaps, material: Material) -> Shar
     let source = MeshSource {
         positions,
         uvs: uvs.concat(),
-        corners: [0, 1, 2, 3, 1, 4, 5, 2].into_iter().zip(0..).map(corner).collect(),
-        arities: vec![4, 4],
-        polygon_parts: vec![0, 0],
         parts: vec![Part { name: "sheet".to_owned(), material: Some(0) }],
-        ..MeshSource::default()
+        ..MeshSource::of_polygons(
+            [0, 1, 2, 3, 1, 4, 5, 2].into_iter().zip(0..).map(corner),
+            vec![4, 4],
+        )
     };
-    let name = "sheet".to_owned();
-    Shared::new(Model {
-        name: name.clone(),
-        source: None,
-        companions: Vec::new(),
-        options: LoadOptions::default(),
-        mesh: Mesh::new(source).unwrap(),
-        materials: vec![FileMaterial {
-            name,
-            material,
-            opacity: 1.0,
-            texture: None,
-            maps,
-            unlit: false,
-            undrawn: Undrawn::new(),
-        }],
-        edge_color: None,
-    })
+    let material = FileMaterial { maps, ..FileMaterial::new("sheet", material) };
+    let mesh = Mesh::new(source).unwrap();
+    Shared::new(Model { materials: vec![material], ..Model::of_mesh("sheet", mesh) })
 }
 
 fn dull() -> Material {
-    Material {
-        ambient: [0.0; 3],
-        diffuse: [DIFFUSE; 3],
-        specular: [0.0; 3],
-        exponent: 1.0,
-        emission: [0.0; 3],
-    }
+    Material::matte([0.0; 3], [DIFFUSE; 3])
 }
 
 /// The sheet in front of the camera, lit by a sun with this direction of travel or unlit.

@@ -7,7 +7,7 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::base::rng::Rng;
 use marraztu_core::scene::{
-    MeshSource, NONE, ObjectId, Part, Scene, Sides, SourceCorner, Surface, Texture, View, Wrap,
+    MeshSource, NONE, ObjectId, Scene, Sides, SourceCorner, Surface, Texture, View, Wrap,
 };
 
 use super::common::{draw, edit, model_of, scene};
@@ -24,8 +24,7 @@ fn noise(width: usize, height: usize, wrap: Wrap, scale: [f64; 2]) -> Shared<Tex
         [grey, grey, grey, 255]
     });
     let picture = Picture::from_pixels(Size::new(width, height), texels.collect()).unwrap();
-    let source = std::path::PathBuf::new();
-    Shared::new(Texture { source, picture: picture.into(), wrap, offset: [0.0; 2], scale })
+    Shared::new(Texture { wrap, scale, ..Texture::new("", picture) })
 }
 
 /// An unlit quad with texture coordinates at its corners.
@@ -33,13 +32,10 @@ fn quad(corners: [DVec3; 4], uvs: [[f32; 2]; 4], texture: &Shared<Texture>) -> (
     let source = MeshSource {
         positions: corners.map(|corner| corner.as_vec3().to_array()).to_vec(),
         uvs: uvs.to_vec(),
-        corners: [0, 1, 2, 0, 2, 3]
-            .map(|i| SourceCorner { position: i, uv: i, normal: NONE })
-            .to_vec(),
-        arities: vec![3, 3],
-        polygon_parts: vec![0, 0],
-        parts: vec![Part { name: "quad".to_owned(), material: None }],
-        ..MeshSource::default()
+        ..MeshSource::of_polygons(
+            [0, 1, 2, 0, 2, 3].map(|i| SourceCorner { position: i, uv: i, normal: NONE }),
+            vec![3, 3],
+        )
     };
     let (mut scene, view) = scene(&[(model_of("quad", source), DMat4::IDENTITY)]);
     edit(&mut scene, ObjectId(10), |object| {

@@ -7,7 +7,7 @@ use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::base::rng::Rng;
 use marraztu_core::scene::{
     Lens, Light, LightId, LightKind, List, Material, MaterialChoice, MeshSource, NONE, ObjectId,
-    Part, Scene, Sides, SourceCorner, Surface, Texture, View, Wrap,
+    Scene, Sides, SourceCorner, Surface, Texture, View, Wrap,
 };
 
 use super::common::{draw, edit, model_of, scene};
@@ -45,13 +45,10 @@ fn stage(sheets: &[(u32, Sheet)]) -> (Scene, View) {
             let source = MeshSource {
                 positions: sheet.corners.map(|corner| corner.as_vec3().to_array()).to_vec(),
                 uvs: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]],
-                corners: [0, 1, 2, 0, 2, 3]
-                    .map(|i| SourceCorner { position: i, uv: i, normal: NONE })
-                    .to_vec(),
-                arities: vec![3, 3],
-                polygon_parts: vec![0, 0],
-                parts: vec![Part { name: "sheet".to_owned(), material: None }],
-                ..MeshSource::default()
+                ..MeshSource::of_polygons(
+                    [0, 1, 2, 0, 2, 3].map(|i| SourceCorner { position: i, uv: i, normal: NONE }),
+                    vec![3, 3],
+                )
             };
             (model_of("sheet", source), DMat4::IDENTITY)
         })
@@ -62,13 +59,7 @@ fn stage(sheets: &[(u32, Sheet)]) -> (Scene, View) {
         edit(&mut scene, ObjectId(id), |object| {
             object.sides = Sides::Two;
             object.opacity = sheet.opacity;
-            object.material = MaterialChoice::Own(Material {
-                ambient: sheet.color,
-                diffuse: [0.0; 3],
-                specular: [0.0; 3],
-                exponent: 1.0,
-                emission: [0.0; 3],
-            });
+            object.material = MaterialChoice::Own(Material::matte(sheet.color, [0.0; 3]));
         });
     }
     // Ids give the ages: an object with a smaller id is older.
@@ -320,13 +311,8 @@ fn case_85_glass_that_reaches_behind_the_eye_is_cut_at_the_near_plane() {
 #[test]
 fn case_86_a_texture_fades_evenly() {
     let texels = (0..16).map(|i| [200, 100, 50, (i * 17) as u8]).collect();
-    let texture = Texture {
-        source: std::path::PathBuf::new(),
-        picture: Picture::from_pixels(Size::new(16, 1), texels).unwrap().into(),
-        wrap: Wrap::Clamp,
-        offset: [0.0; 2],
-        scale: [1.0; 2],
-    };
+    let picture = Picture::from_pixels(Size::new(16, 1), texels).unwrap();
+    let texture = Texture { wrap: Wrap::Clamp, ..Texture::new("", picture) };
     let sheet = turned(DVec3::ZERO, 0.4, [1.0; 3], 0.9);
     let (mut scene, view) = stage(&in_order(&[sheet]));
     let texture = Shared::new(texture);

@@ -140,10 +140,8 @@ fn textured_scene() -> (marraztu_core::scene::Scene, marraztu_core::scene::View)
     let mut object = Object::new(Shared::new(loaded.model), MaterialChoice::Own(material));
     let stretch = glam::DMat4::from_scale(glam::DVec3::new(1.0, 2.0, 1.0));
     object.placement = Tracked::new(stretch);
-    let picture = Picture::filled(Size::new(1, 1), [255; 4]).into();
-    let (wrap, source) = (Wrap::default(), std::path::PathBuf::new());
-    let texture = Texture { source, picture, wrap, offset: [0.0; 2], scale: [1.0; 2] };
-    object.texture = Some(Shared::new(texture));
+    let picture = Picture::filled(Size::new(1, 1), [255; 4]);
+    object.texture = Some(Shared::new(Texture::new("", picture)));
     object.opacity = 0.5;
     let item = Item::Object(ObjectId(100), Box::new(object));
     Command::Insert { at: 0, item }.apply(&mut scene).unwrap();

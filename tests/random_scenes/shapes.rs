@@ -1,6 +1,5 @@
 //! Shapes, materials and textures for random scenes.
 
-use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use marraztu_core::base::Shared;
@@ -8,8 +7,8 @@ use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::base::once::get_or_compute;
 use marraztu_core::base::rng::Rng;
 use marraztu_core::scene::{
-    FileMaterial, LoadOptions, MapKind, Material, Mesh, MeshSource, Model, NONE, Part,
-    SourceCorner, SurfaceMap, SurfaceMaps, Texture, Undrawn, Wrap,
+    FileMaterial, MapKind, Material, Mesh, MeshSource, Model, NONE, Part, SourceCorner, SurfaceMap,
+    SurfaceMaps, Texture, Undrawn, Wrap,
 };
 
 /// Coefficients on both sides of the thresholds for leaving terms out.
@@ -24,37 +23,18 @@ pub(crate) fn shapes() -> &'static [Shared<Model>] {
     })
 }
 
-fn corner(position: u32) -> SourceCorner {
-    SourceCorner { position, uv: NONE, normal: NONE }
-}
-
-fn model(name: &str, source: MeshSource, materials: Vec<FileMaterial>) -> Shared<Model> {
-    let source = MeshSource {
-        parts: if source.parts.is_empty() {
-            vec![Part { name: name.to_owned(), material: None }]
-        } else {
-            source.parts
-        },
-        ..source
-    };
-    Shared::new(Model {
-        name: name.to_owned(),
-        source: None,
-        companions: Vec::new(),
-        options: LoadOptions::default(),
-        mesh: Mesh::new(source).expect("these shapes are meshes"),
-        materials,
-        edge_color: None,
-    })
+fn model(name: &str, mut source: MeshSource, materials: Vec<FileMaterial>) -> Shared<Model> {
+    for part in source.parts.iter_mut().filter(|part| part.name.is_empty()) {
+        name.clone_into(&mut part.name);
+    }
+    let mesh = Mesh::new(source).expect("these shapes are meshes");
+    Shared::new(Model { materials, ..Model::of_mesh(name, mesh) })
 }
 
 fn triangle() -> Shared<Model> {
     let source = MeshSource {
         positions: vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [0.0, 1.0, 0.0]],
-        corners: [0, 1, 2].map(corner).to_vec(),
-        arities: vec![3],
-        polygon_parts: vec![0],
-        ..MeshSource::default()
+        ..MeshSource::of_polygons([0, 1, 2].map(SourceCorner::bare), vec![3])
     };
     model("triangle", source, Vec::new())
 }
@@ -65,10 +45,7 @@ fn square_source() -> MeshSource {
     MeshSource {
         positions: vec![[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]],
         uvs: vec![[0.0, 0.0], [1.5, 0.0], [1.5, 1.0], [0.0, 1.0]],
-        corners: [0, 1, 2, 3].map(textured).to_vec(),
-        arities: vec![4],
-        polygon_parts: vec![0],
-        ..MeshSource::default()
+        ..MeshSource::of_polygons([0, 1, 2, 3].map(textured), vec![4])
     }
 }
 
@@ -80,12 +57,11 @@ fn cube() -> Shared<Model> {
     let side = |i: u32, bit: u32| if i & bit == 0 { -1.0 } else { 1.0 };
     let source = MeshSource {
         positions: (0..8).map(|i| [1, 2, 4].map(|bit| side(i, bit))).collect(),
-        corners: [0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5]
-            .map(corner)
-            .to_vec(),
-        arities: vec![4; 6],
-        polygon_parts: vec![0; 6],
-        ..MeshSource::default()
+        ..MeshSource::of_polygons(
+            [0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5]
+                .map(SourceCorner::bare),
+            vec![4; 6],
+        )
     };
     model("cube", source, Vec::new())
 }
@@ -105,21 +81,17 @@ fn ball(rings: u32) -> Shared<Model> {
     let at = |ring: u32, segment: u32| 2 + (ring - 1) * segments + segment % segments;
     let mut corners = Vec::new();
     for segment in 0..segments {
-        corners.extend([0, at(1, segment), at(1, segment + 1)].map(corner));
-        corners.extend([1, at(rings - 1, segment + 1), at(rings - 1, segment)].map(corner));
+        corners.extend([0, at(1, segment), at(1, segment + 1)].map(SourceCorner::bare));
+        corners.extend(
+            [1, at(rings - 1, segment + 1), at(rings - 1, segment)].map(SourceCorner::bare),
+        );
         for ring in 1..rings - 1 {
             let (a, b, c) = (at(ring, segment), at(ring + 1, segment), at(ring + 1, segment + 1));
-            corners.extend([a, b, c, a, c, at(ring, segment + 1)].map(corner));
+            corners.extend([a, b, c, a, c, at(ring, segment + 1)].map(SourceCorner::bare));
         }
     }
     let triangles = corners.len() / 3;
-    let source = MeshSource {
-        positions,
-        corners,
-        arities: vec![3; triangles],
-        polygon_parts: vec![0; triangles],
-        ..MeshSource::default()
-    };
+    let source = MeshSource { positions, ..MeshSource::of_polygons(corners, vec![3; triangles]) };
     model("ball", source, Vec::new())
 }
 
@@ -139,30 +111,11 @@ fn two_parts() -> Shared<Model> {
             .collect(),
         ..one
     };
-    let dull = Material {
-        ambient: [0.1; 3],
-        diffuse: [0.7, 0.4, 0.2],
-        specular: [0.0; 3],
-        exponent: 1.0,
-        emission: [0.0; 3],
-    };
-    let shiny = Material {
-        ambient: [0.0; 3],
-        diffuse: [0.0; 3],
-        specular: [0.9; 3],
-        exponent: 20.0,
-        emission: [0.0; 3],
-    };
-    let file = |name: &str, material, opacity| FileMaterial {
-        name: name.to_owned(),
-        material,
-        opacity,
-        texture: None,
-        maps: SurfaceMaps::new(),
-        unlit: false,
-        undrawn: Undrawn::new(),
-    };
-    model("two parts", source, vec![file("dull", dull, 1.0), file("shiny", shiny, 0.6)])
+    let dull = Material::matte([0.1; 3], [0.7, 0.4, 0.2]);
+    let shiny =
+        Material { specular: [0.9; 3], exponent: 20.0, ..Material::matte([0.0; 3], [0.0; 3]) };
+    let shiny = FileMaterial { opacity: 0.6, ..FileMaterial::new("shiny", shiny) };
+    model("two parts", source, vec![FileMaterial::new("dull", dull), shiny])
 }
 
 /// A tetrahedron with a colour at each vertex.
@@ -170,10 +123,10 @@ fn colored() -> Shared<Model> {
     let source = MeshSource {
         positions: vec![[1.0, 1.0, 1.0], [-1.0, -1.0, 1.0], [-1.0, 1.0, -1.0], [1.0, -1.0, -1.0]],
         colors: vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0; 3]],
-        corners: [0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3].map(corner).to_vec(),
-        arities: vec![3; 4],
-        polygon_parts: vec![0; 4],
-        ..MeshSource::default()
+        ..MeshSource::of_polygons(
+            [0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3].map(SourceCorner::bare),
+            vec![3; 4],
+        )
     };
     model("tetrahedron", source, Vec::new())
 }
@@ -239,13 +192,7 @@ pub(crate) fn texture(rng: &mut Rng) -> Shared<Texture> {
         [byte(rng), byte(rng), byte(rng), rng.one_of(alphas)]
     };
     let texels = (0..side * side).map(|_| texel()).collect();
-    Shared::new(Texture {
-        source: PathBuf::new(),
-        picture: Picture::from_pixels(Size::new(side, side), texels)
-            .expect("as many as it has")
-            .into(),
-        wrap: rng.one_of(&[Wrap::Repeat, Wrap::Clamp]),
-        offset: [0.0; 2],
-        scale: [1.0; 2],
-    })
+    let picture = Picture::from_pixels(Size::new(side, side), texels).expect("as many as it has");
+    let wrap = rng.one_of(&[Wrap::Repeat, Wrap::Clamp]);
+    Texture { wrap, ..Texture::new("", picture) }.into()
 }

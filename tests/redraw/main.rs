@@ -13,7 +13,6 @@ mod common;
 mod shadows;
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use common::{at, ball, cube, edit, model_of, scene, square};
@@ -35,7 +34,7 @@ use marraztu_core::edit::{
 use marraztu_core::scene::{
     Command, Fill, Frame, Item, ItemId, Light, LightKind, MaterialChoice, MeshSource, Model,
     Normals, Object, ObjectId, Observer, Part, PolygonMode, PresetId, Projection, Scene, Sides,
-    SourceCorner, SpotOwner, Subject, Surface, Texture, Transformation, View, Wrap,
+    SourceCorner, SpotOwner, Subject, Surface, Texture, Transformation, View,
 };
 use marraztu_render::plan_frame;
 use marraztu_render::{Cancelled, Change, Damage, DamageCause, FramePlan, Hit, Renderer};
@@ -80,13 +79,7 @@ fn texture(rng: &mut Rng) -> Shared<Texture> {
         [r, g, b, alpha]
     };
     let pixels = vec![texel(rng, 255), texel(rng, hole), texel(rng, 255), texel(rng, 255)];
-    Shared::new(Texture {
-        source: PathBuf::from("none"),
-        picture: Picture::from_pixels(Size::new(2, 2), pixels).unwrap().into(),
-        wrap: Wrap::Repeat,
-        offset: [0.0; 2],
-        scale: [1.0; 2],
-    })
+    Texture::new("none", Picture::from_pixels(Size::new(2, 2), pixels).unwrap()).into()
 }
 
 /// The edited scene, its view and settings.

@@ -246,13 +246,7 @@ fn the_key_f_adds_to_the_first_scene() {
 
 #[test]
 fn only_highlights_reach_white_from_wherever_models_are_seen() {
-    let white = Material {
-        ambient: [0.2; 3],
-        diffuse: [1.0; 3],
-        specular: [0.0; 3],
-        exponent: 1.0,
-        emission: [0.0; 3],
-    };
+    let white = Material::matte([0.2; 3], [1.0; 3]);
     let bright = Material { ambient: [0.9; 3], ..white };
     let grey = Material { diffuse: [0.5; 3], ..white };
     for (name, factor) in [("x_wing", 1.0), ("r_falke", 1e-4), ("ball", 1e6)] {

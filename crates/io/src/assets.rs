@@ -12,8 +12,8 @@ use super::texture::own_picture;
 use marraztu_core::base::Shared;
 use marraztu_core::base::once::get_or_compute;
 use marraztu_core::scene::{
-    Camera, CameraId, Crease, Lens, Light, LightId, List, LoadOptions, MaterialChoice, Model,
-    Object, ObjectId, Pose, PresetId, Scene, Shape, Texture, Tracked, View, Wrap,
+    Camera, CameraId, Crease, Light, LightId, List, LoadOptions, MaterialChoice, Model, Object,
+    ObjectId, PresetId, Scene, Shape, Texture, Tracked, View,
 };
 
 /// A built-in model.
@@ -54,13 +54,11 @@ static WHEEL: Asset = Asset::new("wheel", include_bytes!("../../../assets/lesson
 const TILES: (&str, &[u8]) = ("own:tiles.png", include_bytes!("../../../assets/lessons/tiles.png"));
 
 /// Returns the pyramid that marks cameras.
-#[must_use]
 pub fn cam_model() -> Shared<Model> {
     CAM.model()
 }
 
 /// Finds a built-in model or a simple shape by name.
-#[must_use]
 pub fn own_model(name: &str) -> Option<Shared<Model>> {
     if let Some(shape) = Shape::named(name) {
         return Some(shape.model());
@@ -74,14 +72,12 @@ pub fn own_model(name: &str) -> Option<Shared<Model>> {
 }
 
 /// Finds a built-in texture by its path in a scene file.
-#[must_use]
 pub fn own_texture(path: &str) -> Option<Shared<Texture>> {
     static TEXTURE: OnceLock<Shared<Texture>> = OnceLock::new();
     let (own, content) = TILES;
     let read = || {
-        let picture = own_picture(content).expect("the program's own texture is sound").into();
-        let (wrap, offset, scale) = (Wrap::default(), [0.0; 2], [1.0; 2]);
-        Shared::new(Texture { source: own.into(), picture, wrap, offset, scale })
+        let picture = own_picture(content).expect("the program's own texture is sound");
+        Shared::new(Texture::new(own, picture))
     };
     (path == own).then(|| get_or_compute(&TEXTURE, read).clone())
 }
@@ -90,7 +86,6 @@ pub fn own_texture(path: &str) -> Option<Shared<Texture>> {
 ///
 /// The order is as if three objects had been loaded one after the other, each to the front of the
 /// list. The last one is therefore first and selected.
-#[must_use]
 pub fn default_scene() -> (Scene, View) {
     let object = |asset: &Asset, material, place| {
         let mut object = Object::new(asset.model(), MaterialChoice::Preset(material));
@@ -109,16 +104,9 @@ pub fn default_scene() -> (Scene, View) {
 }
 
 /// Builds the first scene without its objects, on a background that contrasts with all models.
-#[must_use]
 pub fn empty_scene() -> (Scene, View) {
-    let camera = Camera {
-        name: "camera 1".to_owned(),
-        visible: true,
-        model: cam_model(),
-        material: MaterialChoice::Preset(PresetId::OBSIDIAN),
-        pose: Tracked::new(Pose::facing_minus_z(DVec3::new(0.0, 0.0, 400.0))),
-        lens: Lens::default(),
-    };
+    let obsidian = MaterialChoice::Preset(PresetId::OBSIDIAN);
+    let camera = Camera::new("camera 1", cam_model(), obsidian, DVec3::new(0.0, 0.0, 400.0));
     let lights = Light::five().into_iter().zip(4..).map(|(light, id)| (LightId(id), light));
     let scene = Scene {
         objects: List::default(),

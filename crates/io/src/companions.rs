@@ -14,9 +14,8 @@ use memchr::memmem;
 use super::error::{LoadError, shown};
 use super::locate::Locator;
 use super::mtl::map_names;
-use super::obj::MOST_BYTES;
 use super::obj::lines::Lines;
-use super::packed::{unpacked, unpacked_name};
+use super::packed::{model_name, unpacked};
 use super::progress::Progress;
 use super::read::{MOST_WORDS, read, utf_8};
 
@@ -37,10 +36,7 @@ pub struct Companion {
 /// If the model cannot be read.
 pub fn companions(path: &Path) -> Result<Vec<Companion>, LoadError> {
     let file = shown(path);
-    let text = match unpacked_name(&file) {
-        None => read(path, MOST_BYTES, &Progress::new())?,
-        Some(_) => unpacked(path, &file)?,
-    };
+    let text = unpacked(path, &file)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let folders = vec![folder.to_owned()];
     let mut locator = Locator::default();
@@ -50,8 +46,7 @@ pub fn companions(path: &Path) -> Result<Vec<Companion>, LoadError> {
         found.extend(all.map(|(name, path)| (name, (path, folders.clone()))));
     }
     // Loading falls back to the MTL file with the model's name.
-    let stem = Path::new(unpacked_name(&file).unwrap_or(&file)).file_stem().unwrap_or_default();
-    let own = format!("{}.mtl", stem.to_string_lossy());
+    let own = format!("{}.mtl", model_name(&file));
     let own_path = locator.locate(folder, &own);
     found.entry(own).or_insert((own_path, folders));
     let libraries: Vec<PathBuf> = found.values().filter_map(|(path, _)| path.clone()).collect();

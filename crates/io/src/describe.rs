@@ -8,13 +8,11 @@ use super::obj::Loaded;
 use marraztu_core::scene::{FileMaterial, Mesh, Model, Shape, Smoothing, UpAxis, Winding};
 
 /// Lists the shape, parts, materials and findings of a loaded file, line by line.
-#[must_use]
 pub fn describe(loaded: &Loaded) -> String {
     describe_model(&loaded.model, &loaded.findings)
 }
 
 /// Lists the shape, parts and materials of a model, and findings, line by line.
-#[must_use]
 pub fn describe_model(model: &Model, findings: &[Finding]) -> String {
     let mut text = Text::default();
     text.line("name", &model.name);
@@ -44,7 +42,6 @@ pub fn describe_model(model: &Model, findings: &[Finding]) -> String {
 }
 
 /// Returns the simple shape that a model was made from.
-#[must_use]
 pub fn shape(model: &Model) -> Option<Shape> {
     Shape::named(&model.name).filter(|shape| shape.model().shares_file_with(model))
 }

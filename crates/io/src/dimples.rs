@@ -1,14 +1,13 @@
 //! The built-in ball with dimples: a coarse ball with a procedural bump map.
 
 use std::f64::consts::{PI, TAU};
-use std::path::PathBuf;
 
 use marraztu_core::base::Shared;
 use marraztu_core::base::color::byte;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{
-    FileMaterial, LoadOptions, MapKind, Material, Mesh, MeshSource, Model, Part, Smoothing,
-    SourceCorner, SurfaceMap, SurfaceMaps, Texture, Undrawn, Wrap,
+    FileMaterial, MapKind, Material, Mesh, MeshSource, Model, Part, Smoothing, SourceCorner,
+    SurfaceMap, SurfaceMaps, Texture,
 };
 
 /// The name of the model in scene files.
@@ -77,44 +76,22 @@ fn source() -> MeshSource {
             _ if ring + 1 == RINGS => &[a, b, d],
             _ => &[a, b, c, d],
         };
-        source.corners.extend_from_slice(outline);
-        source.arities.push(u32::try_from(outline.len()).unwrap_or(0));
-        source.polygon_parts.push(0);
+        source.push_polygon(outline);
     }
     source
 }
 
 /// Builds the model with its material.
 pub(super) fn model() -> Shared<Model> {
-    let texture = Shared::new(Texture {
-        source: PathBuf::from("own:dimples"),
-        picture: heights().into(),
-        wrap: Wrap::Repeat,
-        offset: [0.0; 2],
-        scale: REPEATED,
-    });
+    let texture = Texture { scale: REPEATED, ..Texture::new("own:dimples", heights()) };
+    let texture = Shared::new(texture);
     let material = Material {
-        ambient: [0.1; 3],
-        diffuse: [0.65, 0.6, 0.5],
         specular: [0.35; 3],
         exponent: 30.0,
-        emission: [0.0; 3],
+        ..Material::matte([0.1; 3], [0.65, 0.6, 0.5])
     };
-    Shared::new(Model {
-        name: NAME.to_owned(),
-        source: None,
-        companions: Vec::new(),
-        options: LoadOptions::default(),
-        mesh: Mesh::new(source()).expect("the coordinates are finite"),
-        materials: vec![FileMaterial {
-            name: NAME.to_owned(),
-            material,
-            opacity: 1.0,
-            texture: None,
-            maps: SurfaceMaps::from([(MapKind::Bump, SurfaceMap { texture, gain: GAIN })]),
-            unlit: false,
-            undrawn: Undrawn::new(),
-        }],
-        edge_color: None,
-    })
+    let maps = SurfaceMaps::from([(MapKind::Bump, SurfaceMap { texture, gain: GAIN })]);
+    let material = FileMaterial { maps, ..FileMaterial::new(NAME, material) };
+    let mesh = Mesh::new(source()).expect("the coordinates are finite");
+    Shared::new(Model { materials: vec![material], ..Model::of_mesh(NAME, mesh) })
 }

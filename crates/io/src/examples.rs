@@ -16,7 +16,7 @@ use super::progress::Progress;
 use super::texture::own_picture;
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::Picture;
-use marraztu_core::scene::{LoadOptions, Texture, Wrap};
+use marraztu_core::scene::{LoadOptions, Texture};
 
 /// The prefix of paths to the built-in examples.
 const FOLDER: &str = "example:/";
@@ -39,7 +39,6 @@ pub struct Example {
 
 impl Example {
     /// Decodes its thumbnail of 288 x 180 pixels.
-    #[must_use]
     pub fn thumbnail(&self) -> Option<Picture> {
         own_picture(self.thumbnail)
     }
@@ -129,7 +128,6 @@ const FILES: &[(&str, &[u8])] = files![
 ];
 
 /// Returns whether a path names an example or one of its files.
-#[must_use]
 pub fn is_example(path: &Path) -> bool {
     path.to_str().is_some_and(|path| path.starts_with(FOLDER))
 }
@@ -163,10 +161,7 @@ fn content_of(name: &str) -> Option<Cow<'static, [u8]>> {
     std::fs::read(Path::new(HOSTED).join(name)).ok().map(Cow::Owned)
 }
 
-/// Parses a model of the examples from its `content`.
-///
-/// # Errors
-/// If `progress` is cancelled.
+/// Parses a model of the examples from its `content`. Fails if `progress` is cancelled.
 pub(super) fn model(
     path: &Path,
     content: &[u8],
@@ -178,15 +173,11 @@ pub(super) fn model(
     Ok(loaded)
 }
 
-/// Decodes a texture of the examples from its `content`.
-///
-/// # Errors
-/// If it is not a picture.
+/// Decodes a texture of the examples from its `content`. Fails if it is not a picture.
 pub(super) fn texture(path: &Path, content: &[u8]) -> Result<Shared<Texture>, LoadError> {
     let not_a_picture = || LoadError::file(&shown(path), "the picture cannot be decoded");
-    let picture = own_picture(content).ok_or_else(not_a_picture)?.into();
-    let (wrap, offset, scale) = (Wrap::Repeat, [0.0; 2], [1.0; 2]);
-    Ok(Shared::new(Texture { source: path.to_owned(), picture, wrap, offset, scale }))
+    let picture = own_picture(content).ok_or_else(not_a_picture)?;
+    Ok(Shared::new(Texture::new(path, picture)))
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 
 pub use super::finding_kinds::FindingKind;
+use marraztu_core::scene::{ClosedBodies, Mesh};
 
 /// A repair, an omission or an oddity.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -37,7 +38,6 @@ impl Finding {
 }
 
 /// Joins findings of one kind from several files, at the position of the first.
-#[must_use]
 pub fn joined(findings: Vec<Finding>) -> Vec<Finding> {
     let mut places = BTreeMap::new();
     let mut list: Vec<Finding> = Vec::new();
@@ -108,17 +108,18 @@ impl Findings {
     }
 
     /// Notes `count` cases, the first of them at `line`. Zero cases add nothing.
-    pub(super) fn note_all(&mut self, kind: FindingKind, count: usize, line: u32) {
+    pub(super) fn note_all(&mut self, kind: FindingKind, count: usize, line: Option<u32>) {
         if count > 0 {
-            self.add_cases(kind, Cases { count, name: String::new(), line: Some(line) });
+            self.add_cases(kind, Cases { count, name: String::new(), line });
         }
     }
 
-    /// Notes `count` cases without a line. Zero cases add nothing.
-    pub(super) fn note_count(&mut self, kind: FindingKind, count: usize) {
-        if count > 0 {
-            self.add_cases(kind, Cases { count, name: String::new(), line: None });
-        }
+    /// Notes the closed bodies of a mesh that are inside out.
+    pub(super) fn note_inside_out(&mut self, mesh: &Mesh) {
+        let ClosedBodies { all, inside_out } = mesh.closed_bodies();
+        let is_all = inside_out == all;
+        let kind = if is_all { FindingKind::InsideOut } else { FindingKind::InsideOutPartly };
+        self.note_all(kind, inside_out, None);
     }
 
     /// Appends the findings of the text that follows the first `lines` lines.

@@ -22,7 +22,6 @@ impl Fingerprint {
 
     /// Returns whether saving to `path` would overwrite different content. This is so if the file
     /// exists and was changed or cannot be read.
-    #[must_use]
     pub fn differs_from(self, path: &Path) -> bool {
         match read(path, MOST_WORDS, &Progress::new()) {
             Ok(content) => Self::of(&content) != self,

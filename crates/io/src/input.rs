@@ -68,7 +68,6 @@ impl Input {
     }
 
     /// Returns whether the input is a scene, judged by its first bytes.
-    #[must_use]
     pub fn is_scene(&self) -> bool {
         let text = self.bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(&self.bytes);
         let text = text.trim_ascii_start();
@@ -76,13 +75,11 @@ impl Input {
     }
 
     /// Returns the up axis that the comments at the top state.
-    #[must_use]
     pub fn stated_up(&self) -> Option<StatedUp> {
         stated_in(&self.bytes)
     }
 
     /// Returns whether the input is an STL file.
-    #[must_use]
     pub fn is_stl(&self) -> bool {
         has_stl_content(&self.bytes, self.bytes.len())
     }

@@ -20,6 +20,7 @@ use exr::prelude::{
 };
 use glam::DMat4;
 
+use super::picture::sides_of;
 use super::stamp::KEYWORD;
 use marraztu_core::base::color::linear;
 use marraztu_core::base::image::Size;
@@ -102,7 +103,6 @@ pub struct ExrCamera {
 
 /// Encodes a layer as an array of NumPy, with the shape (height, width) or (height, width,
 /// channels).
-#[must_use]
 pub fn layer_npy(size: Size, layer: &LayerPicture<'_>) -> Vec<u8> {
     let channels = match layer.channels.len() {
         1 => String::new(),
@@ -231,8 +231,7 @@ fn png_of(
 ) -> Result<Vec<u8>, String> {
     let mut content = Vec::new();
     let mut encode = || -> Result<(), png::EncodingError> {
-        let [width, height] =
-            [size.width, size.height].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
+        let [width, height] = sides_of(size);
         let mut encoder = png::Encoder::new(&mut content, width, height);
         encoder.set_color(color);
         encoder.set_depth(depth);

@@ -37,7 +37,6 @@ impl Lesson {
     ///
     /// # Panics
     /// Never: a test compares every lesson with the table of axes.
-    #[must_use]
     pub fn axis(&self) -> &'static Axis {
         Axis::named(&self.axis).expect("a lesson is about an axis")
     }
@@ -46,13 +45,11 @@ impl Lesson {
     ///
     /// # Panics
     /// Never, like [`Self::axis`].
-    #[must_use]
     pub fn opens_with(&self) -> &'static Choice {
         self.axis().choice(&self.choice).expect("a lesson opens with a choice of its axis")
     }
 
     /// The settings that it opens with.
-    #[must_use]
     pub fn settings(&self) -> Settings {
         self.opens_with().of(&Settings::default())
     }
@@ -86,7 +83,6 @@ const TEXTS: &[&str] = &[
 ///
 /// # Panics
 /// Never: a test reads every text.
-#[must_use]
 pub fn lessons() -> &'static [Lesson] {
     static LESSONS: OnceLock<Vec<Lesson>> = OnceLock::new();
     let read = |text: &&str| ron::from_str(text).expect("a lesson of the program");
@@ -98,7 +94,6 @@ pub fn lessons() -> &'static [Lesson] {
 ///
 /// # Panics
 /// Never: every axis has a lesson.
-#[must_use]
 pub fn lesson_on(axis: &Axis) -> &'static Lesson {
     let place = AXES.iter().position(|other| other.key == axis.key);
     &lessons()[place.expect("an axis of the table")]

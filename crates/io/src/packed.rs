@@ -1,5 +1,6 @@
 //! Unpacks gzip files.
 
+use std::borrow::Cow;
 use std::io::{Error, ErrorKind, Read};
 use std::path::Path;
 
@@ -7,7 +8,8 @@ use flate2::read::MultiGzDecoder;
 
 use super::error::LoadError;
 use super::obj::MOST_BYTES;
-use super::read::open;
+use super::progress::Progress;
+use super::read::{open, read};
 
 /// The first bytes of every gzip archive (RFC 1952, section 2.3.1).
 pub(super) const MAGIC: &[u8] = b"\x1F\x8B";
@@ -41,11 +43,18 @@ impl<R: Read> Read for Unpacked<R> {
     }
 }
 
-/// Reads and unpacks the model at `path`, named `file` in messages.
-///
-/// # Errors
-/// If it cannot be read, or is damaged.
+/// Returns the name of the model in a file: the file's name without folders and extensions.
+pub(super) fn model_name(file: &str) -> Cow<'_, str> {
+    let stem = Path::new(unpacked_name(file).unwrap_or(file)).file_stem();
+    stem.unwrap_or_default().to_string_lossy()
+}
+
+/// Reads the model at `path`, named `file` in messages, and unpacks it if it is packed. Fails if it
+/// cannot be read, or is damaged.
 pub(super) fn unpacked(path: &Path, file: &str) -> Result<Vec<u8>, LoadError> {
+    if unpacked_name(file).is_none() {
+        return read(path, MOST_BYTES, &Progress::new());
+    }
     let (packed, _) = open(path, MOST_BYTES)?;
     let mut text = Vec::new();
     let limit = u64::try_from(MOST_BYTES).unwrap_or(u64::MAX);

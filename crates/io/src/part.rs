@@ -69,10 +69,7 @@ fn random() -> u32 {
     })
 }
 
-/// Creates a temporary file next to its target.
-///
-/// # Errors
-/// If it cannot be created.
+/// Creates a temporary file next to its target. Fails if it cannot be created.
 pub(super) fn create_part(target: &Path) -> std::io::Result<(File, PathBuf)> {
     static COUNT: AtomicU16 = AtomicU16::new(0);
     let mut attempts = 0;

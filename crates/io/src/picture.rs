@@ -3,6 +3,7 @@
 //! PNG and PPM are written in bands of rows, directly into the file, so a picture of a gigabyte is
 //! never copied.
 
+use std::borrow::Cow;
 use std::fs::File;
 use std::io::{Read, Write};
 use std::path::Path;
@@ -50,7 +51,7 @@ pub static PICTURE_FORMATS: &[PictureFormat] = &[
         name: "PNG",
         endings: &["png"],
         has_alpha: true,
-        encode: write_png,
+        encode: |picture, to| write_png_with(picture, None, to),
         stream: Some(stream_png),
     },
     PictureFormat {
@@ -68,8 +69,13 @@ pub static PICTURE_FORMATS: &[PictureFormat] = &[
         endings: &["webp"],
         has_alpha: true,
         encode: |picture, to| {
-            let picture_to = WebPEncoder::new_lossless(to);
-            write(picture, picture_to)
+            let [width, height] = sides(picture);
+            let (bytes, kind) = match has_alpha(picture) {
+                true => (Cow::Borrowed(picture.pixels().as_flattened()), ExtendedColorType::Rgba8),
+                false => (Cow::Owned(opaque_bytes(picture.pixels())), ExtendedColorType::Rgb8),
+            };
+            let written = WebPEncoder::new_lossless(to).write_image(&bytes, width, height, kind);
+            written.map_err(std::io::Error::other)
         },
         stream: None,
     },
@@ -77,7 +83,10 @@ pub static PICTURE_FORMATS: &[PictureFormat] = &[
         name: "PPM",
         endings: &["ppm"],
         has_alpha: false,
-        encode: write_ppm,
+        encode: |picture, to| {
+            let header = Header { size: picture.size(), has_alpha: false, text: None };
+            stream_ppm(&header, &mut |put| put(picture), to)
+        },
         stream: Some(stream_ppm),
     },
 ];
@@ -95,7 +104,6 @@ impl PictureFormat {
     }
 
     /// Lists the usual extensions of all formats: ".png, .jpg, .webp or .ppm".
-    #[must_use]
     pub fn usual_endings() -> String {
         either(PICTURE_FORMATS.iter().map(|format| format!(".{}", format.endings[0])))
     }
@@ -269,17 +277,6 @@ pub(super) fn has_alpha(picture: &Picture) -> bool {
     picture.pixels().iter().any(|pixel| pixel[3] != 255)
 }
 
-/// Writes a picture, with an alpha channel only if a pixel needs it.
-fn write(picture: &Picture, encoder: impl ImageEncoder) -> std::io::Result<()> {
-    if !has_alpha(picture) {
-        return write_opaque(picture, encoder);
-    }
-    let [width, height] = sides(picture);
-    let bytes = picture.pixels().as_flattened();
-    let written = encoder.write_image(bytes, width, height, ExtendedColorType::Rgba8);
-    written.map_err(std::io::Error::other)
-}
-
 /// A picture without its alpha channel, for encoders that ask for pixels.
 struct Opaque<'a>(&'a Picture);
 
@@ -296,25 +293,13 @@ impl GenericImageView for Opaque<'_> {
     }
 }
 
-fn write_opaque(picture: &Picture, encoder: impl ImageEncoder) -> std::io::Result<()> {
-    let [width, height] = sides(picture);
-    let bytes = opaque_bytes(picture.pixels());
-    encoder
-        .write_image(&bytes, width, height, ExtendedColorType::Rgb8)
-        .map_err(std::io::Error::other)
-}
-
 /// Returns the width and height of a picture, as formats store them.
 pub(super) fn sides(picture: &Picture) -> [u32; 2] {
     sides_of(picture.size())
 }
 
-fn sides_of(size: Size) -> [u32; 2] {
+pub(super) fn sides_of(size: Size) -> [u32; 2] {
     [size.width, size.height].map(|side| u32::try_from(side).unwrap_or(u32::MAX))
-}
-
-fn write_png(picture: &Picture, to: &mut dyn Write) -> std::io::Result<()> {
-    write_png_with(picture, None, to)
 }
 
 /// Encodes a picture as PNG with a comment.
@@ -366,11 +351,6 @@ fn stream_png(header: &Header<'_>, rows: &mut Rows<'_>, to: &mut dyn Write) -> s
     stream.finish()?;
     writer.finish()?;
     Ok(())
-}
-
-fn write_ppm(picture: &Picture, to: &mut dyn Write) -> std::io::Result<()> {
-    let header = Header { size: picture.size(), has_alpha: false, text: None };
-    stream_ppm(&header, &mut |put| put(picture), to)
 }
 
 fn stream_ppm(header: &Header<'_>, rows: &mut Rows<'_>, to: &mut dyn Write) -> std::io::Result<()> {

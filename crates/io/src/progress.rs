@@ -45,20 +45,17 @@ impl Default for Progress {
 
 impl Progress {
     /// Starts at 0.
-    #[must_use]
     pub fn new() -> Self {
         Self::default()
     }
 
     /// Starts at 0, and calls `hear` with the completed fraction of the whole work at each step.
-    #[must_use]
     pub fn heard_by(hear: impl Fn(f64) + Send + Sync + 'static) -> Self {
         let state = Status { hear: Some(Box::new(hear)), ..Status::default() };
         Self { state: Arc::new(state), ..Self::default() }
     }
 
     /// Returns the completed fraction of the whole work, from 0 to 1.
-    #[must_use]
     pub fn fraction(&self) -> f64 {
         f64::from_bits(self.state.fraction.load(Ordering::Relaxed))
     }
@@ -69,7 +66,6 @@ impl Progress {
     }
 
     /// Returns whether [`Self::cancel`] was called.
-    #[must_use]
     pub fn is_cancelled(&self) -> bool {
         self.state.cancelled.load(Ordering::Relaxed)
     }

@@ -28,10 +28,8 @@ pub fn check_file(path: &Path) -> Result<(), LoadError> {
     readable(path).map(|_| ())
 }
 
-/// Opens a file of at most `most` bytes, and returns its size as far as it is known.
-///
-/// # Errors
-/// If it cannot be opened, is not a file, or is larger.
+/// Opens a file of at most `most` bytes, and returns its size as far as it is known. Fails if it
+/// cannot be opened, is not a file, or is larger.
 pub(super) fn open(path: &Path, most: usize) -> Result<(File, usize), LoadError> {
     let metadata = readable(path)?;
     let size = usize::try_from(metadata.len()).unwrap_or(usize::MAX);
@@ -86,10 +84,8 @@ pub fn read_file(path: &Path) -> Result<Vec<u8>, LoadError> {
     read(path, usize::MAX - 1, &Progress::new())
 }
 
-/// Reads a file in pieces, reporting progress and checking for cancellation in between.
-///
-/// # Errors
-/// If it cannot be read, has more than `most` bytes, or `progress` is cancelled.
+/// Reads a file in pieces, reporting progress and checking for cancellation in between. Fails if it
+/// cannot be read, has more than `most` bytes, or `progress` is cancelled.
 pub(super) fn read(path: &Path, most: usize, progress: &Progress) -> Result<Vec<u8>, LoadError> {
     let file = shown(path);
     let (mut handle, size) = open(path, most)?;

@@ -45,10 +45,8 @@ pub(super) enum Worth {
     Journal,
 }
 
-/// Checks whether a file can be written at `path`: its folder exists and is writable.
-///
-/// # Errors
-/// If it cannot.
+/// Checks whether a file can be written at `path`: its folder exists and is writable. Fails if it
+/// cannot.
 pub(super) fn check_target(path: &Path) -> Result<(), SaveError> {
     let target = target(path)?;
     check_folder(path, &target)?;

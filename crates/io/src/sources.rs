@@ -20,7 +20,6 @@ pub struct Sources {
 
 impl Sources {
     /// Collects the files of all objects.
-    #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let mut sources = Self::default();
         for (_, object) in scene.objects.iter() {

@@ -61,7 +61,6 @@ pub fn encode_stamped(
 }
 
 /// Appends a stamp to a file of numbers: OpenEXR or NumPy. The stamp is printable ASCII.
-#[must_use]
 pub fn stamped_at_end(mut content: Vec<u8>, stamp: &str) -> Vec<u8> {
     content.extend_from_slice([MARK, stamp, "\n"].concat().as_bytes());
     content
@@ -112,7 +111,6 @@ fn chunk(name: &[u8; 4], content: &[u8]) -> Vec<u8> {
 }
 
 /// Reads the stamp of a picture. `None` if the file does not exist, has no stamp, or is incomplete.
-#[must_use]
 pub fn read_stamp(path: &Path) -> Option<String> {
     let mut file = File::open(path).ok()?;
     let length = file.metadata().ok()?.len();

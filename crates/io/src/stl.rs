@@ -15,15 +15,14 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-use super::error::{LoadError, shown};
+use super::error::LoadError;
 use super::findings::{FindingKind, Findings, joined};
-use super::obj::{Loaded, MOST_BYTES, place};
-use super::packed::{unpacked, unpacked_name};
+use super::obj::{Loaded, place};
+use super::packed::{model_name, unpacked_name};
 use super::progress::Progress;
-use super::read::read;
 use marraztu_core::scene::{
-    ClosedBodies, CornerLists, LoadOptions, Mesh, MeshSource, Model, Part, PartNames, Smoothing,
-    Winding, split_positions,
+    CornerLists, LoadOptions, Mesh, MeshSource, Model, Part, PartNames, Smoothing, Winding,
+    split_positions,
 };
 
 /// The bytes before the triangles of a binary file: a comment of 80 bytes, and their number.
@@ -44,7 +43,6 @@ pub(super) fn has_stl_content(head: &[u8], size: usize) -> bool {
 }
 
 /// Returns whether the file at `path` is an STL file, judged by its name or by its content.
-#[must_use]
 pub fn is_stl(path: &Path) -> bool {
     // Reading from a pipe would consume bytes that the loader needs.
     let size = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file);
@@ -56,25 +54,6 @@ pub fn is_stl(path: &Path) -> bool {
     };
     has_stl_name(path)
         || size.is_some_and(|size| head().is_some_and(|head| has_stl_content(&head, size)))
-}
-
-/// Loads an STL file. A file with the extension `.gz` is unpacked.
-///
-/// # Errors
-/// If it cannot be read, is damaged or has no triangles, or `progress` is cancelled.
-pub(super) fn load(
-    path: &Path,
-    options: &LoadOptions,
-    progress: &Progress,
-) -> Result<Loaded, LoadError> {
-    let file = shown(path);
-    let bytes = match unpacked_name(&file) {
-        None => read(path, MOST_BYTES, &Progress::new())?,
-        Some(_) => unpacked(path, &file)?,
-    };
-    let mut loaded = parse(&bytes, &file, options, progress)?;
-    loaded.model.source = Some(std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned()));
-    Ok(loaded)
 }
 
 /// Returns whether a name ends in .stl or .stl.gz.
@@ -136,10 +115,7 @@ impl Solids {
     }
 }
 
-/// Parses an STL file.
-///
-/// # Errors
-/// If it is damaged or has no triangles, or `progress` is cancelled.
+/// Parses an STL file. Fails if it is damaged or has no triangles, or `progress` is cancelled.
 pub(super) fn parse(
     bytes: &[u8],
     file: &str,
@@ -279,24 +255,10 @@ fn model(
     let mesh = Mesh::from_lists(source, lists);
     let mesh = mesh.map_err(|error| LoadError::file(file, error.to_string()))?;
     let mut findings = Findings::new(file);
-    findings.note_count(FindingKind::FaceNoArea, mesh.without_area().len());
-    let ClosedBodies { all, inside_out } = mesh.closed_bodies();
-    let kind = match inside_out == all {
-        true => FindingKind::InsideOut,
-        false => FindingKind::InsideOutPartly,
-    };
-    findings.note_count(kind, inside_out);
+    findings.note_all(FindingKind::FaceNoArea, mesh.without_area().len(), None);
+    findings.note_inside_out(&mesh);
     progress.reached(1, 1)?;
-    let name = Path::new(unpacked_name(file).unwrap_or(file)).file_stem().unwrap_or_default();
-    let model = Model {
-        name: name.to_string_lossy().into_owned(),
-        source: None,
-        companions: Vec::new(),
-        options: *options,
-        mesh,
-        materials: Vec::new(),
-        edge_color: None,
-    };
+    let model = Model { options: *options, ..Model::of_mesh(&model_name(file), mesh) };
     Ok(Loaded { model, findings: joined(findings.into_list()) })
 }
 

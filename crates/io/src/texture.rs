@@ -13,7 +13,7 @@ use super::progress::Progress;
 use super::read::read;
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
-use marraztu_core::scene::{Texture, Wrap};
+use marraztu_core::scene::Texture;
 
 /// The largest side of a texture, in texels.
 const LARGEST_SIDE: u32 = 16_384;
@@ -36,13 +36,11 @@ const FORMATS: &[(&str, ImageFormat)] = &[
 ];
 
 /// Lists the input formats of textures for a sentence.
-#[must_use]
 pub fn texture_formats() -> String {
     either(FORMATS.iter().map(|(name, _)| (*name).to_owned()))
 }
 
 /// Returns the file extensions of textures.
-#[must_use]
 pub fn texture_endings() -> Vec<&'static str> {
     FORMATS.iter().flat_map(|(_, format)| format.extensions_str()).copied().collect()
 }
@@ -112,11 +110,8 @@ pub(super) struct Read {
 }
 
 impl Pictures {
-    /// Returns the picture of a file.
-    ///
-    /// # Errors
-    /// If it cannot be read, is not a picture, or has more than `most` texels. The size is checked
-    /// before decoding.
+    /// Returns the picture of a file. Fails if it cannot be read, is not a picture, or has more
+    /// than `most` texels. The size is checked before decoding.
     pub(super) fn read(&mut self, path: &Path, most: usize) -> Result<Read, LoadError> {
         // One file may have several paths.
         let file = std::fs::canonicalize(path).unwrap_or_else(|_missing| path.to_owned());
@@ -136,10 +131,8 @@ impl Pictures {
         read
     }
 
-    /// Returns the texture of a file. It repeats, and uses the model's texture coordinates.
-    ///
-    /// # Errors
-    /// If the file cannot be read or is not a picture.
+    /// Returns the texture of a file. It repeats, and uses the model's texture coordinates. Fails
+    /// if the file cannot be read or is not a picture.
     pub(super) fn texture(
         &mut self,
         path: &Path,
@@ -151,14 +144,9 @@ impl Pictures {
             own.add(FindingKind::TextureCutOff, &shown(path), None);
             findings.extend(own.into_list());
         }
-        Ok(Shared::new(Texture {
-            // An absolute path stays valid when the current folder changes.
-            source: std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned()),
-            picture,
-            wrap: Wrap::Repeat,
-            offset: [0.0; 2],
-            scale: [1.0; 2],
-        }))
+        // An absolute path stays valid when the current folder changes.
+        let source = std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned());
+        Ok(Shared::new(Texture::new(source, picture)))
     }
 }
 

@@ -32,7 +32,6 @@ pub struct StatedUp {
 
 /// Finds the up axis in the comments at the top of a file; `None` if there is no statement or the
 /// file cannot be read.
-#[must_use]
 pub fn stated_up(path: &Path) -> Option<StatedUp> {
     // Reading from a pipe would consume bytes that the loader needs.
     if !std::fs::metadata(path).ok()?.is_file() {

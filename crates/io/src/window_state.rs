@@ -31,7 +31,6 @@ pub struct Panels(BTreeMap<String, bool>);
 
 impl Panels {
     /// Returns whether a panel is open, if it is listed.
-    #[must_use]
     pub fn is_open(&self, name: &str) -> Option<bool> {
         self.0.get(name).copied()
     }

@@ -40,7 +40,6 @@ pub struct Share {
 }
 
 /// Attributes the error of a pixel; `None` if the pixel is outside the picture.
-#[must_use]
 pub fn attribute(
     source: &mut dyn PictureSource,
     settings: &Settings,
@@ -83,13 +82,11 @@ fn distance(a: [u8; 3], b: [u8; 3]) -> i32 {
 
 impl Attribution {
     /// Returns the error in byte steps, summed over the channels.
-    #[must_use]
     pub fn steps(&self) -> i32 {
         distance(self.ours, self.exact)
     }
 
     /// Describes the result, line by line.
-    #[must_use]
     pub fn lines(&self) -> Vec<String> {
         let [x, y] = self.at;
         let color = |[r, g, b]: [u8; 3]| format!("({r}, {g}, {b})");

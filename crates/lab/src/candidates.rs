@@ -50,7 +50,6 @@ impl Thoroughness {
     };
 
     /// Finds one of them by its name.
-    #[must_use]
     pub fn named(word: &str) -> Option<Self> {
         [Self::QUICK, Self::AXIS, Self::WHOLE].into_iter().find(|one| one.word == word)
     }
@@ -100,7 +99,6 @@ pub struct Candidates {
 }
 
 /// Lists the settings to measure for these axes in this scene.
-#[must_use]
 pub fn candidates(
     scene: &Scene,
     view: &View,
@@ -286,7 +284,6 @@ fn set(combination: &[Pick]) -> Vec<usize> {
 const MOST: usize = 4096;
 
 /// Returns all axes.
-#[must_use]
 pub fn all_axes() -> Vec<&'static Axis> {
     AXES.iter().collect()
 }

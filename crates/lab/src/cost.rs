@@ -51,26 +51,22 @@ impl Explained {
 
 impl Group<'_> {
     /// Returns the number of items with the effect on.
-    #[must_use]
     pub fn on(&self) -> usize {
         self.uses.iter().filter(|one| one.state.is_on()).count()
     }
 
     /// Returns whether all uses are in the same state, for the same reason.
-    #[must_use]
     pub fn is_alike(&self) -> bool {
         self.uses.iter().all(|one| one.state == self.uses[0].state)
     }
 
     /// Returns the total number of pixels.
-    #[must_use]
     pub fn pixels(&self) -> Option<u64> {
         let counted = self.uses.iter().filter_map(|one| one.pixels);
         counted.reduce(|sum, pixels| sum + pixels)
     }
 
     /// Describes the items with the effect on.
-    #[must_use]
     pub fn of(&self) -> String {
         let (on, all) = (self.on(), self.uses.len());
         match &self.uses[0].on {
@@ -106,20 +102,17 @@ pub struct Costs {
 
 impl Costs {
     /// Returns the cost of an effect, if it was measured.
-    #[must_use]
     pub fn of(&self, effect: Effect) -> Option<&Cost> {
         self.effects.iter().find(|cost| cost.effect == effect)
     }
 
     /// Returns whether a cost exceeds the noise.
-    #[must_use]
     pub fn is_clear(&self, cost: &Cost) -> bool {
         cost.milliseconds.abs() > self.noise + cost.spread
     }
 }
 
 /// Plans and draws a picture, and counts the pixels of each effect.
-#[must_use]
 pub fn explain(shot: &Shot) -> Explained {
     let mut renderer = Renderer::default();
     renderer.render(&plan_frame(shot));
@@ -127,7 +120,6 @@ pub fn explain(shot: &Shot) -> Explained {
 }
 
 /// Works like [`explain`], for the picture that `renderer` drew last.
-#[must_use]
 pub fn explain_with(renderer: &mut Renderer, shot: &Shot) -> Explained {
     let (_, mut uses) = explain_frame(shot);
     renderer.count(&mut uses);
@@ -136,7 +128,6 @@ pub fn explain_with(renderer: &mut Renderer, shot: &Shot) -> Explained {
 
 /// Measures the costs of a picture's effects within about `budget`. Once `stopped` returns true,
 /// the result is partial.
-#[must_use]
 pub fn measure(shot: &Shot, budget: Duration, stopped: impl Fn() -> bool) -> Costs {
     let (plan, uses) = explain_frame(shot);
     let mut effects: Vec<Effect> =

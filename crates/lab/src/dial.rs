@@ -65,7 +65,6 @@ pub fn of_dial(
 }
 
 /// Formats an error of the dial in byte steps: "12", "3.2", "0.04".
-#[must_use]
 pub fn error_in_words(error: f64) -> String {
     match error {
         0.0 => "0".to_owned(),
@@ -78,7 +77,6 @@ pub fn error_in_words(error: f64) -> String {
 
 /// Describes what the third picture of the dial, Exact, costs and gives compared with the second,
 /// Default: "Exact takes about 6x as long as Default and cuts the error from 2.3 to 0.8 of 255".
-#[must_use]
 pub fn in_words(figures: &[Figures]) -> Option<String> {
     let [_, default, exact, ..] = figures else { return None };
     let (before, after) = (default.error?, exact.error?);
@@ -161,7 +159,6 @@ pub enum Step {
 
 impl Dial {
     /// Prepares to measure pictures of a shot with these settings.
-    #[must_use]
     pub fn new(shot: &Shot, all: &[Settings]) -> Self {
         let ideal = shot.settings.ideal();
         let pictures = all.iter().filter(|settings| **settings != ideal).map(|settings| Drawn {
@@ -205,7 +202,6 @@ impl Dial {
     }
 
     /// Returns the figures so far: those of the pictures in their order, then the ideal's.
-    #[must_use]
     pub fn figures(&self) -> Vec<Figures> {
         let sample = self.sample.as_ref().filter(|sample| sample.chosen.len() >= LEAST);
         let pixels = self.plan.size().area();

@@ -61,7 +61,6 @@ pub enum Region {
 
 impl Region {
     /// Returns the addition to the label of a metric.
-    #[must_use]
     pub const fn note(self) -> &'static str {
         match self {
             Self::Whole => "",
@@ -72,7 +71,6 @@ impl Region {
 
 impl Error {
     /// Returns the figures over a region.
-    #[must_use]
     pub const fn over(&self, region: Region) -> &Figures {
         match region {
             Region::Whole => &self.whole,
@@ -101,7 +99,6 @@ impl Measure {
     pub const ALL: [Self; 4] = [Self::Rmse, Self::Largest, Self::Differing, Self::Flip];
 
     /// Returns the name on the command line.
-    #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
             Self::Rmse => "rmse",
@@ -112,7 +109,6 @@ impl Measure {
     }
 
     /// Returns the label at a plot axis.
-    #[must_use]
     pub const fn label(self) -> &'static str {
         match self {
             Self::Rmse => "RMSE in byte steps",
@@ -123,7 +119,6 @@ impl Measure {
     }
 
     /// Returns the metric's value for an error. FLIP always covers all pixels.
-    #[must_use]
     pub fn of(self, error: &Error, region: Region) -> f64 {
         let figures = error.over(region);
         match self {
@@ -137,7 +132,6 @@ impl Measure {
 
 impl Rendering {
     /// Combines a picture with the primitive at each pixel.
-    #[must_use]
     pub fn new(picture: Picture, primitives: Vec<u32>) -> Self {
         assert_eq!(picture.pixels().len(), primitives.len(), "every pixel shows something");
         let seen = Perceived::new(&picture);
@@ -151,13 +145,11 @@ impl Rendering {
     }
 
     /// The picture.
-    #[must_use]
     pub const fn picture(&self) -> &Picture {
         &self.picture
     }
 
     /// Computes the error of this picture against a reference.
-    #[must_use]
     pub fn error(&self, reference: &Self) -> Error {
         let (mut whole, mut inside) = (Sum::default(), Sum::default());
         let pixels = self.picture.pixels().iter().zip(reference.picture.pixels());
@@ -179,7 +171,6 @@ impl Rendering {
     }
 
     /// Computes the byte differences between this picture and another.
-    #[must_use]
     pub fn change(&self, other: &Self) -> Figures {
         let mut sum = Sum::default();
         for (a, b) in self.picture.pixels().iter().zip(other.picture.pixels()) {
@@ -222,7 +213,6 @@ impl Sum {
 }
 
 /// Returns the absolute difference of two equally sized pictures, times `factor`.
-#[must_use]
 pub fn amplified(a: &Picture, b: &Picture, factor: u16) -> Picture {
     let difference = |a: u8, b: u8| {
         u8::try_from(u32::from(a.abs_diff(b)) * u32::from(factor)).unwrap_or(u8::MAX)

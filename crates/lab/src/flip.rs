@@ -11,6 +11,7 @@
 use libm::{ceil, exp, pow, sqrt};
 use rayon::prelude::*;
 
+use marraztu_core::base::color::linear;
 use marraztu_core::base::image::{Picture, Size};
 
 /// Pixels per degree: 0.7 (3840 / 0.7) (pi / 180).
@@ -45,7 +46,6 @@ pub struct Perceived {
 
 impl Perceived {
     /// Filters a picture.
-    #[must_use]
     pub fn new(picture: &Picture) -> Self {
         let size = picture.size();
         let opponent: Vec<[f64; 3]> = picture.pixels().par_iter().map(|p| opponent(*p)).collect();
@@ -62,7 +62,6 @@ impl Perceived {
     }
 
     /// Returns the mean difference to another picture of the same size, from 0 to 1.
-    #[must_use]
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^52 pixels")]
     pub fn difference(&self, other: &Self) -> f64 {
         assert_eq!(self.size, other.size, "pictures of one size are compared");
@@ -99,16 +98,8 @@ fn times(m: [[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
 
 /// Converts a pixel to Y C_x C_z, a linear relative of CIELAB.
 fn opponent(pixel: [u8; 4]) -> [f64; 3] {
-    let linear = |byte: u8| {
-        let c = f64::from(byte) / 255.0;
-        if c <= 0.04045 { c / 12.92 } else { pow((c + 0.055) / 1.055, 2.4) }
-    };
-    let [r, g, b, _] = pixel;
-    opponent_of_linear([r, g, b].map(linear))
-}
-
-fn opponent_of_linear(rgb: [f64; 3]) -> [f64; 3] {
-    let [x, y, z] = relative(times(XYZ_FROM_RGB, rgb));
+    let [r, g, b, _] = pixel.map(|byte| linear(f64::from(byte) / 255.0));
+    let [x, y, z] = relative(times(XYZ_FROM_RGB, [r, g, b]));
     [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
 }
 

@@ -14,7 +14,6 @@ pub struct Point {
 
 /// Returns the indices of the points on the front, from the fastest to the most exact. Each reduces
 /// the error of its predecessor by at least the fraction `least`.
-#[must_use]
 pub fn front(points: &[Point], least: f64) -> Vec<usize> {
     let mut order: Vec<usize> = (0..points.len()).collect();
     let by = |a: &Point, b: &Point| a.time.total_cmp(&b.time).then(a.error.total_cmp(&b.error));
@@ -30,7 +29,6 @@ pub fn front(points: &[Point], least: f64) -> Vec<usize> {
 }
 
 /// Returns the fastest point with an error of at most `most`.
-#[must_use]
 pub fn fastest_within(points: &[Point], most: f64) -> Option<usize> {
     let within = (0..points.len()).filter(|i| points[*i].error <= most);
     within.min_by(|a, b| {
@@ -40,7 +38,6 @@ pub fn fastest_within(points: &[Point], most: f64) -> Option<usize> {
 }
 
 /// Returns the most exact point with a time of at most `most`.
-#[must_use]
 pub fn most_exact_within(points: &[Point], most: f64) -> Option<usize> {
     let within = (0..points.len()).filter(|i| points[*i].time <= most);
     within.min_by(|a, b| {

@@ -1,7 +1,6 @@
 //! A hash with the same value on every machine.
 
 /// Computes FNV-1a (Fowler, Noll and Vo) in 64 bits over bytes or wider words.
-#[must_use]
 pub fn fnv1a(words: impl IntoIterator<Item = u64>) -> u64 {
     words
         .into_iter()

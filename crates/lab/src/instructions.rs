@@ -5,7 +5,6 @@ pub use marraztu_render::simd::levels;
 
 /// Finds an instruction set by name: `best`, `avx512`, `avx2`, `sse4.2`, or `plain`, the oldest
 /// that pictures are drawn with. `None` if this processor lacks it, or if the name is unknown.
-#[must_use]
 pub fn named(name: &str) -> Option<Level> {
     let levels = levels();
     match name {
@@ -19,7 +18,6 @@ pub fn named(name: &str) -> Option<Level> {
 }
 
 /// Returns the name of an instruction set in reports, such as "Avx2".
-#[must_use]
 pub fn name_of(level: Level) -> String {
     let level = format!("{level:?}");
     level.split(['(', ' ', '{']).next().unwrap_or_default().to_owned()

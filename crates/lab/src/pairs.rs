@@ -61,6 +61,7 @@ struct Touches {
 
 /// While this guard exists, measurements are invalid.
 #[derive(Debug)]
+#[must_use]
 pub struct Touch(Arc<Touches>);
 
 /// The time that the effects of a touch last, such as showing the window.
@@ -77,14 +78,12 @@ impl Watch {
     }
 
     /// Marks the machine as busy while the guard exists. The current pair is discarded.
-    #[must_use]
     pub fn touch(&self) -> Touch {
         self.touches.count.fetch_add(1, Ordering::Relaxed);
         Touch(Arc::clone(&self.touches))
     }
 
     /// Returns the current time of a pair. More frequent touches would disturb every pair.
-    #[must_use]
     pub fn pair(&self) -> Duration {
         Duration::from_millis(self.touches.pair.load(Ordering::Relaxed))
     }
@@ -139,7 +138,6 @@ pub const CONFIDENCE: f64 = 0.95;
 impl Ratio {
     /// Returns the interval of ratios that are indistinguishable from this one. It combines, on
     /// each side, the larger of the confidence interval and `floor` around the median.
-    #[must_use]
     pub fn noise(&self, floor: f64) -> [f64; 2] {
         let ([lower, upper], median) = (self.interval, self.quartiles.median);
         [lower.min(median / (1.0 + floor)), upper.max(median * (1.0 + floor))]
@@ -155,7 +153,6 @@ impl Ratio {
     }
 
     /// A ratio that was measured once, without pairs.
-    #[must_use]
     pub const fn once(ratio: f64, a_ms: f64) -> Self {
         let quartiles = Quartiles { lower: ratio, median: ratio, upper: ratio };
         Self { quartiles, interval: [ratio; 2], pairs: 1, thrown: 0, a_ms }

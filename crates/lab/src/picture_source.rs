@@ -23,7 +23,6 @@ pub enum Reference {
 
 impl Reference {
     /// The settings of the reference of a picture with these settings.
-    #[must_use]
     pub fn of(self, settings: &Settings) -> Settings {
         match self {
             Self::Ideal => settings.ideal(),
@@ -33,7 +32,6 @@ impl Reference {
 
     /// The name of the reference of a picture with these settings: "ideal", "exact texture filter".
     /// No choice of a model is exact, so the name of the choice is given: "specular form R.V".
-    #[must_use]
     pub fn name(self, settings: &Settings) -> String {
         match self {
             Self::Ideal => "ideal".to_owned(),
@@ -91,35 +89,25 @@ pub struct Studio {
 
 impl Studio {
     /// Prepares to draw this shot with any settings.
-    #[must_use]
     pub fn new(shot: Shot) -> Self {
         Self::watched(shot, Progress::new())
     }
 
     /// Works like [`Self::new`]. Once `progress` is cancelled, drawing ends soon with undefined
     /// pictures.
-    #[must_use]
     pub fn watched(shot: Shot, progress: Progress) -> Self {
         Self { shot, renderer: Renderer::default(), progress }
     }
 
     /// Returns the shot.
-    #[must_use]
     pub const fn shot(&self) -> &Shot {
         &self.shot
     }
 
     /// Returns the name of the item at a pixel of the last picture, and the polygon.
-    #[must_use]
     pub fn seen(&mut self, [x, y]: [usize; 2]) -> Option<(String, u32)> {
-        use marraztu_core::scene::ItemId;
         let hit = self.renderer.hit(x, y)?;
-        let name = match hit.item {
-            ItemId::Object(id) => self.shot.scene.objects.get(id).map(|object| &object.name),
-            ItemId::Camera(id) => self.shot.scene.cameras.get(id).map(|camera| &camera.name),
-            ItemId::Light(id) => self.shot.scene.lights.get(id).map(|light| &light.name),
-        };
-        Some((name?.clone(), hit.polygon))
+        Some((self.shot.scene.name(hit.item)?.to_owned(), hit.polygon))
     }
 }
 
@@ -144,7 +132,6 @@ impl PictureSource for Studio {
 }
 
 /// Hashes a picture's pixels with FNV-1a, with the same value on every machine.
-#[must_use]
 pub fn hash(picture: &Picture) -> u64 {
     fnv1a(picture.pixels().iter().map(|pixel| u64::from(u32::from_le_bytes(*pixel))))
 }

@@ -5,7 +5,7 @@
 use glam::DVec3;
 
 use marraztu_core::accuracy::LightAt;
-use marraztu_core::scene::{ItemId, LightId, Scene};
+use marraztu_core::scene::{LightId, Scene};
 use marraztu_render::{LightRay, PixelColor, SurfacePoint, Term};
 
 /// A row of the sum.
@@ -18,7 +18,6 @@ pub struct Row {
 }
 
 /// Returns rows that add up to the colour of the pixel: the terms, and the rounding error.
-#[must_use]
 pub fn rows(scene: &Scene, explained: &PixelColor) -> Vec<Row> {
     let steps = |value: [f64; 3]| value.map(|x| x * 255.0);
     let label = |term: &Term| {
@@ -37,19 +36,12 @@ pub fn rows(scene: &Scene, explained: &PixelColor) -> Vec<Row> {
 }
 
 /// Returns the name of a light.
-#[must_use]
 pub fn light_name(scene: &Scene, id: LightId) -> &str {
     scene.lights.get(id).map_or("a light", |light| &light.name)
 }
 
 /// Returns facts about the surface as pairs of name and value.
-#[must_use]
 pub fn facts(scene: &Scene, point: &SurfacePoint) -> Vec<[String; 2]> {
-    let name = match point.item {
-        ItemId::Object(id) => scene.objects.get(id).map(|object| &object.name),
-        ItemId::Camera(id) => scene.cameras.get(id).map(|camera| &camera.name),
-        ItemId::Light(id) => scene.lights.get(id).map(|light| &light.name),
-    };
     let side = if point.back { "back" } else { "front" };
     let light = match point.light_at {
         None => "not lit",
@@ -58,7 +50,7 @@ pub fn facts(scene: &Scene, point: &SurfacePoint) -> Vec<[String; 2]> {
         Some(LightAt::Pixel | LightAt::Sample) => "at the pixel",
     };
     let mut facts = vec![
-        ["shows".to_owned(), format!("{}, {side}", name.map_or("nothing", String::as_str))],
+        ["shows".to_owned(), format!("{}, {side}", scene.name(point.item).unwrap_or("nothing"))],
         ["polygon".to_owned(), format!("{}, triangle {}", point.polygon, point.triangle)],
         ["barycentrics".to_owned(), vector(point.weights)],
         ["distance".to_owned(), number(point.distance)],
@@ -75,7 +67,6 @@ pub fn facts(scene: &Scene, point: &SurfacePoint) -> Vec<[String; 2]> {
 }
 
 /// Describes the path of a light to the point, in one line.
-#[must_use]
 pub fn ray_line(ray: &LightRay) -> String {
     let cosine = if ray.half_vector { "N.H" } else { "R.V" };
     let mut line = format!(
@@ -99,7 +90,6 @@ pub fn ray_line(ray: &LightRay) -> String {
 }
 
 /// Writes the whole explanation as text, line by line.
-#[must_use]
 pub fn lines(scene: &Scene, explained: &PixelColor) -> Vec<String> {
     let [x, y] = explained.at;
     let mut lines = vec![format!("pixel {x},{y}")];
@@ -129,7 +119,6 @@ pub fn lines(scene: &Scene, explained: &PixelColor) -> Vec<String> {
 }
 
 /// Formats a number with up to four decimals.
-#[must_use]
 pub fn number(x: f64) -> String {
     let text = if x != 0.0 && (x.abs() < 1e-3 || x.abs() >= 1e6) {
         format!("{x:.3e}")

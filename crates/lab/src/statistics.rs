@@ -18,7 +18,6 @@ pub struct Quartiles {
 
 impl Quartiles {
     /// Returns the quartiles of numbers without NaN; `None` for an empty slice.
-    #[must_use]
     pub fn of(numbers: &[f64]) -> Option<Self> {
         let mut sorted = numbers.to_vec();
         sorted.sort_by(f64::total_cmp);
@@ -27,20 +26,17 @@ impl Quartiles {
     }
 
     /// Returns half the interquartile range (IQR).
-    #[must_use]
     pub fn spread(&self) -> f64 {
         (self.upper - self.lower) / 2.0
     }
 }
 
 /// Returns the median of numbers without NaN; `None` for an empty slice.
-#[must_use]
 pub fn median(numbers: &[f64]) -> Option<f64> {
     Quartiles::of(numbers).map(|quartiles| quartiles.median)
 }
 
 /// Returns a quantile of numbers without NaN; `None` without numbers.
-#[must_use]
 pub fn quantile_of(mut numbers: Vec<f64>, p: f64) -> Option<f64> {
     numbers.sort_by(f64::total_cmp);
     quantile(&numbers, p)

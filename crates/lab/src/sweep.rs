@@ -107,7 +107,6 @@ pub enum Against {
 
 impl Against {
     /// Returns the name in tables.
-    #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
             Self::Ideal => "ideal",
@@ -152,7 +151,6 @@ pub struct Row {
 impl Findings {
     /// Returns the interval of a point's ratio to the default. Two points differ in time if their
     /// intervals do not overlap.
-    #[must_use]
     pub fn noise_of(&self, point: usize) -> [f64; 2] {
         if point == 0 { DEFAULT } else { self.points[point].ratio.noise(self.floor) }
     }
@@ -160,7 +158,6 @@ impl Findings {
     /// Returns the smallest and the largest noise of some points, as fractions. The noise of a
     /// point is the larger distance of its median to the ends of its interval. Without points, it
     /// is the control's.
-    #[must_use]
     pub fn noises(&self, points: impl Iterator<Item = usize>) -> [f64; 2] {
         let noise = |point: usize| {
             noise_from(self.points[point].ratio.quartiles.median, self.noise_of(point))
@@ -188,7 +185,6 @@ const DEFAULT: [f64; 2] = [1.0; 2];
 
 impl Verdict {
     /// Judges a ratio to the default, ignoring differences up to `floor`.
-    #[must_use]
     pub fn of(ratio: &Ratio, floor: f64) -> Self {
         let (noise, median) = (ratio.noise(floor), ratio.quartiles.median);
         match Self::between(noise, DEFAULT) {
@@ -199,7 +195,6 @@ impl Verdict {
 
     /// Judges one choice against another by the intervals of their ratios: they differ only if the
     /// intervals do not overlap.
-    #[must_use]
     pub fn between(one: [f64; 2], other: [f64; 2]) -> Self {
         if one[1] < other[0] {
             Self::Faster
@@ -211,7 +206,6 @@ impl Verdict {
     }
 
     /// Returns the name in tables.
-    #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
             Self::Faster => "faster",

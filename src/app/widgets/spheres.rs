@@ -18,9 +18,8 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::base::math;
 use marraztu_core::scene::{
-    Camera, Command, Item, Lens, Light, LightId, LightKind, LoadOptions, Material, MaterialChoice,
-    Mesh, MeshSource, Model, NONE, Object, ObjectId, Part, Pose, PresetId, Projection, Scene,
-    SourceCorner, Tracked,
+    Camera, Command, Item, Lens, Light, LightId, LightKind, Material, MaterialChoice, Mesh,
+    MeshSource, Model, NONE, Object, ObjectId, PresetId, Projection, Scene, SourceCorner, Tracked,
 };
 use marraztu_io::cam_model;
 use marraztu_render::Renderer;
@@ -111,14 +110,9 @@ impl Spheres {
 
 /// Creates a scene with a sphere, a camera and two lights.
 fn studio() -> (Scene, Renderer) {
-    let mut scene = Scene::with_camera(Camera {
-        name: String::new(),
-        visible: false,
-        model: cam_model(),
-        material: MaterialChoice::File,
-        pose: Tracked::new(Pose::facing_minus_z(DVec3::Z * 5.0)),
-        lens: Lens { half_size: 0.95, parallel_far: 10.0, ..Lens::default() },
-    });
+    let lens = Lens { half_size: 0.95, parallel_far: 10.0, ..Lens::default() };
+    let camera = Camera::new("", cam_model(), MaterialChoice::File, DVec3::Z * 5.0);
+    let mut scene = Scene::with_camera(Camera { visible: false, lens, ..camera });
     let direction = math::unit(DVec3::new(0.5, -0.6, -0.75)).unwrap_or(DVec3::NEG_Z);
     let sun = LightKind::Sun { direction: Tracked::new(direction) };
     let object = Object::new(ball(), MaterialChoice::File);
@@ -179,10 +173,7 @@ fn disk(picture: &Picture, side: usize) -> ColorImage {
 fn ball() -> Shared<Model> {
     const RINGS: u32 = 24;
     const SECTORS: u32 = 48;
-    let mut source = MeshSource {
-        parts: vec![Part { name: String::new(), material: None }],
-        ..MeshSource::default()
-    };
+    let mut source = MeshSource::of_polygons([], Vec::new());
     // Vertices in rings from pole to pole. The poles are rings of equal points.
     for ring in 0..=RINGS {
         let polar = std::f64::consts::PI * f64::from(ring) / f64::from(RINGS);
@@ -201,25 +192,18 @@ fn ball() -> Shared<Model> {
     };
     for ring in 0..RINGS {
         for sector in 0..SECTORS {
-            source.corners.extend([
+            source.push_polygon(&[
                 corner(ring, sector),
                 corner(ring + 1, sector),
                 corner(ring + 1, sector + 1),
                 corner(ring, sector + 1),
             ]);
-            source.arities.push(4);
-            source.polygon_parts.push(0);
         }
     }
-    Shared::new(Model {
-        name: "ball".to_owned(),
-        source: None,
-        companions: Vec::new(),
-        options: LoadOptions::default(),
-        mesh: Mesh::new(source).expect("all places are finite and all indices in range"),
-        materials: Vec::new(),
-        edge_color: None,
-    })
+    Shared::new(Model::of_mesh(
+        "ball",
+        Mesh::new(source).expect("all places are finite and all indices in range"),
+    ))
 }
 
 #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
@@ -234,13 +218,7 @@ mod tests {
     #[test]
     fn a_sphere_is_its_material_brightest_at_the_upper_left_and_clear_about_it() {
         let (mut scene, mut renderer) = studio();
-        let red = Material {
-            ambient: [0.1, 0.0, 0.0],
-            diffuse: [0.8, 0.0, 0.0],
-            specular: [0.0; 3],
-            exponent: 1.0,
-            emission: [0.0; 3],
-        };
+        let red = Material::matte([0.1, 0.0, 0.0], [0.8, 0.0, 0.0]);
         let image = image(&mut scene, &mut renderer, red, 32);
         let at = |x: usize, y: usize| image.pixels[y * 32 + x];
         assert_eq!(at(0, 0), Color32::TRANSPARENT);

@@ -117,9 +117,9 @@ impl StageCache {
 fn load(row: &Row, progress: &Progress) -> Loaded {
     let options = &row.parsed.options;
     let files = [row.file.clone()];
-    let stage = Stage::of(&files, &options.reading, Watch::Progress(progress));
+    let stage = Stage::of(&files, &options.scene.reading, Watch::Progress(progress));
     let stage = stage.and_then(|mut stage| {
-        cover(&mut stage, &options.surfaces)?;
+        cover(&mut stage, &options.scene.surfaces)?;
         // Findings about the texture of the options come last.
         stage.findings = io::joined(std::mem::take(&mut stage.findings));
         for (_, object) in stage.scene.objects.iter() {

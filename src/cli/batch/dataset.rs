@@ -24,7 +24,7 @@ use serde_json::{Value, json};
 
 use super::jobs::Job;
 use super::outcome::Fault;
-use super::template::stem;
+use super::template::{Fields, stem};
 use crate::cli::failure::Failure;
 
 /// Millimetres per unit.
@@ -52,9 +52,9 @@ impl Dataset {
         }
     }
 
-    /// Returns the file of a layer.
-    pub(super) fn path(self, folder: &Path, place: &Place<'_>, layer: &str) -> PathBuf {
-        let Place { file, row, view, index } = *place;
+    /// Returns the file of a layer. `row` is the number of the model or scene.
+    pub(super) fn path(self, folder: &Path, fields: &Fields<'_>, row: usize) -> PathBuf {
+        let Fields { file, view, index, layer, .. } = *fields;
         match self {
             Self::Nerf => folder.join(format!("{}/{layer}/{view:05}.png", stem(file))),
             Self::Bop => {
@@ -67,18 +67,6 @@ impl Dataset {
             }
         }
     }
-}
-
-/// The place of a picture in the list.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Place<'a> {
-    pub(super) file: &'a Path,
-    /// The number of the model or scene.
-    pub(super) row: usize,
-    /// The number of the view of the model.
-    pub(super) view: usize,
-    /// The number of the picture.
-    pub(super) index: usize,
 }
 
 /// The entries of a picture in the tables.
@@ -157,10 +145,8 @@ fn runs(size: Size, mask: &[bool]) -> Vec<usize> {
 /// A file of a data set.
 type File = (PathBuf, Vec<u8>);
 
-/// Describes a picture, and encodes its masks.
-///
-/// # Errors
-/// If the batch ends, or BOP cannot describe the pose of an object.
+/// Describes a picture, and encodes its masks. Fails if the batch ends, or BOP cannot describe the
+/// pose of an object.
 pub(super) fn image(
     dataset: Dataset,
     renderer: &mut Renderer,
@@ -246,10 +232,7 @@ fn nine(matrix: DMat3) -> [f64; 9] {
     matrix.transpose().to_cols_array()
 }
 
-/// Writes the tables of a data set.
-///
-/// # Errors
-/// If a file cannot be written.
+/// Writes the tables of a data set. Fails if a file cannot be written.
 pub(super) fn write_tables(
     dataset: Dataset,
     folder: &Path,

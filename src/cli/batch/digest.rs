@@ -58,7 +58,7 @@ impl Stamper {
     pub(super) fn stamp(&self, job: &Job) -> Option<String> {
         let model = self.model(&job.row.file)?;
         let (camera, size) = (job.camera(), job.size());
-        let texture = job.row.parsed.options.surfaces.texture.as_deref();
+        let texture = job.row.parsed.options.scene.surfaces.texture.as_deref();
         let texture = texture.map(|path| self.file(path).unwrap_or_default());
         let text = format!(
             "{VERSION}\n{}\n{}\n{}{:?}\n{}x{}\n{}\n{texture:?}\n",
@@ -124,10 +124,7 @@ fn once<T: Clone>(
     value.get_or_insert_with(compute).clone()
 }
 
-/// Returns the SHA-256 of a file in hexadecimal digits.
-///
-/// # Errors
-/// If it cannot be read.
+/// Returns the SHA-256 of a file in hexadecimal digits. Fails if it cannot be read.
 pub(super) fn hash_of_file(path: &Path) -> std::io::Result<String> {
     io::check_file(path).map_err(std::io::Error::other)?;
     let mut file = File::open(path)?;

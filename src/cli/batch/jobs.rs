@@ -11,7 +11,7 @@ use marraztu_core::base::image::Size;
 use marraztu_io::{self as io, Sources};
 
 use super::Batch;
-use super::dataset::{Dataset, Place};
+use super::dataset::Dataset;
 use super::list::{self, Entry, expanded, read_list};
 use super::options::{OptionParser, OptionTexts, Parsed, Value, WrongOption};
 use super::shard::Shard;
@@ -172,10 +172,10 @@ impl RowReader {
             result.map_err(|reason| Failure::Usage(format!("--{option}: {reason}")))
         };
         if let Some(text) = &arguments.views {
-            check(reader.views(text).map(drop), "views")?;
+            check(once(&mut reader.views, text, parse_views).map(drop), "views")?;
         }
         if let (Some(text), None) = (&arguments.out, arguments.dataset) {
-            check(reader.template(text).map(drop), "out")?;
+            check(once(&mut reader.templates, text, Template::parse).map(drop), "out")?;
         }
         Ok(reader)
     }
@@ -183,24 +183,6 @@ impl RowReader {
     /// Returns whether there is such a column, in addition to the file.
     fn has(&self, column: &str) -> bool {
         matches!(column, "views" | "out") || self.parser.has(column)
-    }
-
-    fn views(&mut self, text: &str) -> Result<Arc<Vec<CameraView>>, String> {
-        if let Some(views) = self.views.get(text) {
-            return Ok(Arc::clone(views));
-        }
-        let views = Arc::new(parse_views(text)?);
-        self.views.insert(text.to_owned(), Arc::clone(&views));
-        Ok(views)
-    }
-
-    fn template(&mut self, text: &str) -> Result<Arc<Template>, String> {
-        if let Some(template) = self.templates.get(text) {
-            return Ok(Arc::clone(template));
-        }
-        let template = Arc::new(Template::parse(text)?);
-        self.templates.insert(text.to_owned(), Arc::clone(&template));
-        Ok(template)
     }
 
     fn row(&mut self, entry: Entry) -> Result<Row, Failure> {
@@ -230,30 +212,31 @@ impl RowReader {
             // An option of the command line that conflicts is not a column, but named as well.
             wrong(option.as_deref(), &reason)
         })?;
-        if let Some(texture) = &parsed.options.surfaces.texture {
+        if let Some(texture) = &parsed.options.scene.surfaces.texture {
             let found = io::check_file(texture);
             found.map_err(|error| wrong(Some("texture"), &error.to_string()))?;
         }
-        if is_scene(&file) && parsed.options.reading.is_given() {
+        if is_scene(&file) && parsed.options.scene.reading.is_given() {
             return Err(wrong(
                 None,
                 "--up, --scale, --flip-winding, --crease and --bump-maps apply to models, and this \
                  is a scene",
             ));
         }
-        let has_camera =
-            parsed.options.seeing.camera.is_some() || parsed.options.seeing.from.is_some();
+        let seeing = &parsed.options.scene.seeing;
+        let has_camera = seeing.camera.is_some() || seeing.from.is_some();
         let views = match views {
             Some(_) if has_camera => {
                 return Err(wrong(Some("views"), "it replaces --camera and --from: give one"));
             }
-            Some(text) => self.views(&text).map_err(|reason| wrong(Some("views"), &reason))?,
+            Some(text) => once(&mut self.views, &text, parse_views)
+                .map_err(|reason| wrong(Some("views"), &reason))?,
             None => Arc::new(own_view()),
         };
         let names = match (self.dataset, out) {
             (Some(dataset), out) => Names::Dataset(dataset, out.unwrap_or_default().into()),
             (None, Some(text)) => {
-                let template = self.template(&text);
+                let template = once(&mut self.templates, &text, Template::parse);
                 Names::Template(template.map_err(|reason| wrong(Some("out"), &reason))?)
             }
             (None, None) => {
@@ -267,6 +250,20 @@ impl RowReader {
     }
 }
 
+/// Returns the value of a text, which is parsed once.
+fn once<T>(
+    known: &mut BTreeMap<String, Arc<T>>,
+    text: &str,
+    parse: fn(&str) -> Result<T, String>,
+) -> Result<Arc<T>, String> {
+    if let Some(value) = known.get(text) {
+        return Ok(Arc::clone(value));
+    }
+    let value = Arc::new(parse(text)?);
+    known.insert(text.to_owned(), Arc::clone(&value));
+    Ok(value)
+}
+
 /// Numbers the pictures of all rows and names their files.
 fn jobs_of(rows: &[Arc<Row>]) -> Result<Vec<Job>, Failure> {
     let mut jobs = Vec::new();
@@ -275,13 +272,11 @@ fn jobs_of(rows: &[Arc<Row>]) -> Result<Vec<Job>, Failure> {
             let index = jobs.len();
             let (file, ext) = (&*row.file, row.ext);
             let view_name = &camera.name;
-            let path = |layer: &str| match &row.names {
-                Names::Template(template) => {
-                    template.path(&Fields { file, index, view, view_name, layer, ext })
-                }
-                Names::Dataset(dataset, folder) => {
-                    let place = Place { file, row: row.number, view, index };
-                    dataset.path(folder, &place, layer)
+            let path = |layer: &str| {
+                let fields = Fields { file, index, view, view_name, layer, ext };
+                match &row.names {
+                    Names::Template(template) => template.path(&fields),
+                    Names::Dataset(dataset, folder) => dataset.path(folder, &fields, row.number),
                 }
             };
             let options = &row.parsed.options;

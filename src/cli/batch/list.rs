@@ -37,10 +37,7 @@ enum ListFormat {
 }
 
 /// Reads the list at `path`; "-" is standard input. The names of the columns in the header of a CSV
-/// file are checked with `is_column`.
-///
-/// # Errors
-/// If it cannot be read, or a row is not valid.
+/// file are checked with `is_column`. Fails if it cannot be read, or a row is not valid.
 pub(crate) fn read_list(
     path: &Path,
     is_column: &dyn Fn(&str) -> bool,
@@ -56,10 +53,8 @@ pub(crate) fn read_list(
     entries.map_err(Failure::Usage)
 }
 
-/// Reads a file of text, or standard input for "-".
-///
-/// # Errors
-/// If it cannot be read, is a device, or is not in UTF-8.
+/// Reads a file of text, or standard input for "-". Fails if it cannot be read, is a device, or is
+/// not in UTF-8.
 pub(crate) fn read_text(path: &Path) -> Result<String, Failure> {
     let wrong = |reason: String| Failure::Usage(reason);
     let bytes = if is_standard(path) {
@@ -205,10 +200,7 @@ fn entry(place: String, mut values: Vec<(String, Value)>) -> Result<Entry, Strin
 }
 
 /// Expands the patterns among the arguments, such as `models/**/*.obj`, in the order of names.
-/// Existing files are taken literally.
-///
-/// # Errors
-/// If a pattern is invalid, or no file matches it.
+/// Existing files are taken literally. Fails if a pattern is invalid, or no file matches it.
 pub(crate) fn expanded(files: &[PathBuf]) -> Result<Vec<Entry>, Failure> {
     let mut entries = Vec::new();
     for file in files {

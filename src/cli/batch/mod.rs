@@ -44,7 +44,7 @@ pub(super) use self::outcome::Status;
 use self::report::{Counts, Reporter, check_report};
 use self::shard::{Shard, shard};
 use self::sheets::{Grid, check_sheets, grid, write_sheets};
-use self::studio::{Manner, Studio, silence_panics};
+use self::studio::{Studio, silence_panics};
 use super::arguments::choice;
 use super::cameras::{CAMERAS, check_cameras, write_cameras};
 use super::failure::{Failure, usage};
@@ -157,21 +157,13 @@ pub(crate) struct Batch {
 }
 
 /// Draws the pictures that the arguments describe.
-pub(super) fn batch(arguments: &Batch) -> Result<(), Failure> {
+pub(super) fn batch(arguments: Box<Batch>) -> Result<(), Failure> {
+    let arguments: Arc<Batch> = Arc::from(arguments);
     arguments.talk.apply();
-    let Jobs { jobs, all, inputs } = Jobs::of(arguments)?;
+    let Jobs { jobs, all, inputs } = Jobs::of(&arguments)?;
     if arguments.dry_run {
         return print(&listed(&jobs));
     }
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let manner = Manner {
-        threads: arguments.threads.unwrap_or(cores),
-        resume: arguments.resume,
-        reports: arguments.report.is_some(),
-        limit: arguments.timeout,
-        memory: arguments.memory,
-        dataset: arguments.dataset,
-    };
     let (report, times) = (arguments.report.as_deref(), arguments.times.as_deref());
     if report.is_some() && report == times {
         return Err(usage("--report and --times name the same file"));
@@ -180,18 +172,18 @@ pub(super) fn batch(arguments: &Batch) -> Result<(), Failure> {
     if let Some(grid) = arguments.sheet {
         check_sheets(grid, &arguments.sheets, &jobs)?;
     }
-    let name = cameras_name(arguments);
+    let name = cameras_name(&arguments);
     if !matches!(arguments.dataset, Some(Dataset::Bop | Dataset::Coco)) {
         check_all_cameras(&name, &jobs, arguments.dataset, &inputs)?;
     }
-    let studio = Arc::new(Studio::new(jobs, manner));
+    let studio = Arc::new(Studio::new(jobs, Arc::clone(&arguments)));
     let mut reporter = Reporter::begin(studio.jobs(), all, report, times)?;
     let mut meter = Meter::of(studio.jobs().len());
     let (mut done, mut cameras, mut images) = (Vec::new(), Vec::new(), Vec::new());
     let mut repaired = 0;
     let signal = watched_signals();
     silence_panics();
-    let results = start(&studio)?;
+    let results = start(&studio, arguments.threads())?;
     let ended = collect(&studio, &results, &signal, &mut |outcome| {
         meter.tick();
         let Some(mut outcome) = outcome else { return Ok(true) };
@@ -228,6 +220,14 @@ pub(super) fn batch(arguments: &Batch) -> Result<(), Failure> {
         note(&format_args!("{repaired} of the pictures have findings: {list} lists them"));
     }
     status(&counts, signal.load(Ordering::Relaxed), arguments.strict_exit)
+}
+
+impl Batch {
+    /// Returns the number of pictures that are drawn at a time.
+    fn threads(&self) -> usize {
+        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+        self.threads.unwrap_or_else(cores)
+    }
 }
 
 /// Returns the name of the file of cameras.
@@ -277,11 +277,11 @@ fn watched_signals() -> Arc<AtomicUsize> {
 }
 
 /// Starts the threads. The channel closes when all have ended.
-fn start(studio: &Arc<Studio>) -> Result<Receiver<Outcome>, Failure> {
+fn start(studio: &Arc<Studio>, threads: usize) -> Result<Receiver<Outcome>, Failure> {
     let failed = |error| Failure::Usage(format!("a thread cannot be started: {error}"));
     let (sender, results) = channel();
     let named = |name: String| Builder::new().name(name).stack_size(STACK);
-    for i in 0..studio.threads() {
+    for i in 0..threads {
         let (studio, sender) = (Arc::clone(studio), sender.clone());
         named(format!("draw {i}")).spawn(move || studio.work(&sender)).map_err(failed)?;
     }

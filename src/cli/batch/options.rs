@@ -14,7 +14,7 @@ use clap::{ArgAction, ArgMatches, Args, Command, FromArgMatches};
 use marraztu_core::base::image::Size;
 
 use crate::cli::accuracy::Accuracy;
-use crate::cli::arguments::{Reading, Seeing, Surfaces};
+use crate::cli::arguments::{Reading, SceneArguments, Surfaces};
 use crate::cli::layers::LayerOptions;
 use crate::cli::values::size;
 
@@ -29,11 +29,7 @@ pub(super) struct PictureOptions {
     #[arg(long)]
     pub(super) transparent: bool,
     #[command(flatten)]
-    pub(super) reading: Reading,
-    #[command(flatten)]
-    pub(super) surfaces: Surfaces,
-    #[command(flatten)]
-    pub(super) seeing: Seeing,
+    pub(super) scene: SceneArguments,
     #[command(flatten)]
     pub(super) accuracy: Accuracy,
     #[command(flatten)]
@@ -117,10 +113,8 @@ impl OptionParser {
         self.names.contains_key(name)
     }
 
-    /// Returns options with one of them replaced.
-    ///
-    /// # Errors
-    /// If a switch has a value that is neither true nor false.
+    /// Returns options with one of them replaced. Fails if a switch has a value that is neither
+    /// true nor false.
     pub(super) fn with(
         &self,
         texts: &OptionTexts,
@@ -148,10 +142,7 @@ impl OptionParser {
         Ok(texts)
     }
 
-    /// Parses options.
-    ///
-    /// # Errors
-    /// If a value is invalid, or options conflict.
+    /// Parses options. Fails if a value is invalid, or options conflict.
     pub(super) fn parse(&mut self, texts: &OptionTexts) -> Result<Arc<Parsed>, WrongOption> {
         if let Some(parsed) = self.parsed.get(texts) {
             return Ok(Arc::clone(parsed));
@@ -258,13 +249,13 @@ mod tests {
         let mut parser = OptionParser::new();
         let parsed = parser.parse(&base).unwrap();
         assert_eq!(parsed.text, "edges=\nfrom=-30,10\nsize=64\n");
-        assert!(parsed.options.seeing.edges);
+        assert!(parsed.options.scene.seeing.edges);
         let row = parser.with(&base, "edges", Value::Switch(false)).unwrap();
         let row = parser.with(&row, "size", text("32x16")).unwrap();
         let row = parser.with(&row, "material", text("gold")).unwrap();
         let parsed = parser.parse(&row).unwrap();
         assert_eq!(parsed.options.size, Some(Size::new(32, 16)));
-        assert!(!parsed.options.seeing.edges);
+        assert!(!parsed.options.scene.seeing.edges);
         assert_eq!(parsed.model_text, "material=gold\n");
         assert!(Arc::ptr_eq(&parsed, &parser.parse(&row).unwrap()), "equal rows are parsed once");
     }

@@ -87,10 +87,8 @@ impl Fault {
 /// A finished picture.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Drawn {
-    /// The first file.
-    pub(super) first: FileSum,
-    /// The other files: layers.
-    pub(super) layers: Vec<FileSum>,
+    /// The files; the first one has the name of the picture.
+    pub(super) files: Vec<FileSum>,
     /// The camera, if the picture has layers.
     pub(super) camera: Option<Box<CameraFrame>>,
     /// The entries in the tables of a data set.
@@ -102,7 +100,7 @@ pub(super) struct Drawn {
 }
 
 /// A file of a picture.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct FileSum {
     pub(super) out: String,
     /// The SHA-256, if a report needs it.

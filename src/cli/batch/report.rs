@@ -98,15 +98,16 @@ impl Line {
             Ok(drawn) => (drawn, Status::Done, None),
             Err(fault) => (&none, fault.status(), Some(fault.reason())),
         };
+        let first = drawn.files.first();
         Self {
             index: job.index,
             input: shown(&job.row.file),
             in_sha256: outcome.in_sha256.clone(),
             view: job.camera().name.clone(),
             out: shown(job.out()),
-            out_sha256: drawn.first.sha256.clone(),
-            bytes: (status == Status::Done).then_some(drawn.first.bytes),
-            layers: drawn.layers.clone(),
+            out_sha256: first.and_then(|first| first.sha256.clone()),
+            bytes: first.map(|first| first.bytes),
+            layers: drawn.files.iter().skip(1).cloned().collect(),
             status,
             findings: drawn.findings.clone(),
             error,
@@ -142,10 +143,7 @@ struct Times {
 const LONGEST: u64 = 1 << 24;
 
 /// Checks that a report, or a file of times, may be written to `path`: an existing file is one, or
-/// empty, and not an input.
-///
-/// # Errors
-/// If it is another file.
+/// empty, and not an input. Fails if it is another file.
 pub(crate) fn check_report(path: &Path, sources: &Sources) -> Result<(), Failure> {
     sources.spare(path)?;
     // Writing refuses what is not a file.
@@ -167,10 +165,7 @@ pub(crate) fn check_report(path: &Path, sources: &Sources) -> Result<(), Failure
     )))
 }
 
-/// Begins a file, and creates its folder.
-///
-/// # Errors
-/// If it cannot be created.
+/// Begins a file, and creates its folder. Fails if it cannot be created.
 pub(crate) fn begin(path: &Path) -> Result<NewFile, SaveError> {
     if let Some(folder) = path.parent() {
         // If this fails, so does creating the file, with the reason.
@@ -193,10 +188,8 @@ pub(super) struct Reporter<'a> {
 }
 
 impl<'a> Reporter<'a> {
-    /// Begins a report. `all` is the number of jobs in the whole list.
-    ///
-    /// # Errors
-    /// If a file cannot be created.
+    /// Begins a report. `all` is the number of jobs in the whole list. Fails if a file cannot be
+    /// created.
     pub(super) fn begin(
         jobs: &'a [Job],
         all: usize,
@@ -213,10 +206,7 @@ impl<'a> Reporter<'a> {
         })
     }
 
-    /// Adds the result of a job.
-    ///
-    /// # Errors
-    /// If a file cannot be written.
+    /// Adds the result of a job. Fails if a file cannot be written.
     pub(super) fn add(&mut self, outcome: &Outcome) -> Result<(), SaveError> {
         let job = &self.jobs[outcome.job];
         if let (Some(times), false) = (&mut self.times, outcome.result == Err(Fault::Cancelled)) {
@@ -247,10 +237,8 @@ impl<'a> Reporter<'a> {
         Ok(())
     }
 
-    /// Completes the report: jobs without a result are cancelled.
-    ///
-    /// # Errors
-    /// If a file cannot be written.
+    /// Completes the report: jobs without a result are cancelled. Fails if a file cannot be
+    /// written.
     pub(super) fn finish(mut self) -> Result<Counts, SaveError> {
         let cancelled: Vec<usize> = self.open.iter().map(|(_, job)| *job).collect();
         for job in cancelled {

@@ -50,10 +50,8 @@ impl Shard {
     }
 }
 
-/// Parses the value of `--shard`: "3/64", counted from 0, or "auto".
-///
-/// # Errors
-/// The reason, if it is invalid, or the environment names no task.
+/// Parses the value of `--shard`: "3/64", counted from 0, or "auto". Fails with the reason if it is
+/// invalid, or the environment names no task.
 pub(super) fn shard(text: &str) -> Result<Shard, String> {
     shard_in(text, &|name| std::env::var(name).ok())
 }

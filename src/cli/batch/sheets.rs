@@ -30,10 +30,8 @@ impl Grid {
     }
 }
 
-/// Checks that sheets replace no other file, and that they can show the files of the jobs.
-///
-/// # Errors
-/// If a file with the name of a sheet is none, or a job writes no picture.
+/// Checks that sheets replace no other file, and that they can show the files of the jobs. Fails if
+/// a file with the name of a sheet is none, or a job writes no picture.
 pub(super) fn check_sheets(grid: Grid, folder: &Path, jobs: &[Job]) -> Result<(), Failure> {
     if let Some(job) = jobs.iter().find(|job| PictureFormat::of(job.out()).is_err()) {
         let out = job.out().display();
@@ -64,10 +62,7 @@ pub(super) fn grid(text: &str) -> Result<Grid, String> {
 }
 
 /// Writes the sheets of these jobs, in their order, to numbered files in a folder, as long as
-/// `wanted` returns true.
-///
-/// # Errors
-/// If a picture cannot be read, or a sheet cannot be written.
+/// `wanted` returns true. Fails if a picture cannot be read, or a sheet cannot be written.
 pub(super) fn write_sheets(
     grid: Grid,
     folder: &Path,

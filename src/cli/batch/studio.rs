@@ -12,7 +12,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::Sender;
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use marraztu_core::accuracy::Shot;
@@ -21,6 +21,7 @@ use marraztu_io::{self as io, Progress};
 use marraztu_render::{LayerNames, Layers, Renderer, plan_frame, without_ground_while};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
+use super::Batch;
 use super::cache::StageCache;
 use super::dataset::{self, Dataset, DatasetImage};
 use super::digest::{Stamper, hash_of, hash_of_file};
@@ -41,28 +42,11 @@ const LARGE: usize = 1 << 20;
 /// The number of models that are read ahead.
 const AHEAD: usize = 2;
 
-/// How a batch is drawn.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Manner {
-    /// The number of threads that draw.
-    pub(super) threads: usize,
-    /// Whether pictures with the right stamp are skipped.
-    pub(super) resume: bool,
-    /// Whether a report needs hashes and findings.
-    pub(super) reports: bool,
-    /// The time limit of a picture.
-    pub(super) limit: Option<Duration>,
-    /// The limit of memory for models, in bytes.
-    pub(super) memory: usize,
-    /// The data set that the pictures are a part of.
-    pub(super) dataset: Option<Dataset>,
-}
-
 /// The state that the threads of a batch share.
 #[derive(Debug)]
 pub(super) struct Studio {
     jobs: Vec<Job>,
-    manner: Manner,
+    arguments: Arc<Batch>,
     /// The position of the next job.
     next: AtomicUsize,
     stopped: AtomicBool,
@@ -85,13 +69,13 @@ struct Attempt<'a> {
 }
 
 impl Studio {
-    pub(super) fn new(jobs: Vec<Job>, manner: Manner) -> Self {
+    pub(super) fn new(jobs: Vec<Job>, arguments: Arc<Batch>) -> Self {
         Self {
             jobs,
-            manner,
             next: AtomicUsize::new(0),
             stopped: AtomicBool::new(false),
-            cache: StageCache::new(manner.memory),
+            cache: StageCache::new(arguments.memory),
+            arguments,
             stamper: Stamper::new(),
             large: Mutex::default(),
             folders: Mutex::default(),
@@ -104,9 +88,14 @@ impl Studio {
         &self.jobs
     }
 
-    /// Returns the number of threads that draw.
-    pub(super) const fn threads(&self) -> usize {
-        self.manner.threads
+    /// Returns whether a report needs hashes and findings.
+    fn reports(&self) -> bool {
+        self.arguments.report.is_some()
+    }
+
+    /// Returns the time at which a picture that is begun now is given up.
+    fn end(&self) -> Option<Instant> {
+        self.arguments.timeout.map(|limit| Instant::now() + limit)
     }
 
     /// Ends the batch: pictures that are being drawn are given up.
@@ -140,14 +129,14 @@ impl Studio {
         while !self.is_stopped() {
             let number = self.next.fetch_add(1, Ordering::Relaxed);
             let Some(job) = self.jobs.get(number) else { return };
-            let until = self.manner.limit.map(|limit| Instant::now() + limit);
+            let until = self.end();
             let mut attempt = Attempt { studio: self, job, until, spent: Spent::default() };
             let result = guarded(|| attempt.picture(&mut renderer)).unwrap_or_else(|panic| {
                 renderer = Renderer::default();
                 Err(Fault::Program(panic))
             });
             let model = || guarded(|| self.stamper.model(&job.row.file)).ok().flatten();
-            let wanted = self.manner.reports && result != Err(Fault::Cancelled);
+            let wanted = self.reports() && result != Err(Fault::Cancelled);
             let in_sha256 = if wanted { model().map(|model| model.file) } else { None };
             let outcome = Outcome { job: number, result, in_sha256, spent: attempt.spent };
             if results.send(outcome).is_err() {
@@ -178,15 +167,14 @@ impl Studio {
             }
             if self.next.load(Ordering::Relaxed) < at + group && !self.is_up_to_date(job) {
                 // A panic is reported by the job that meets it again.
-                let until = self.manner.limit.map(|limit| Instant::now() + limit);
-                let _ = guarded(|| self.scene(&job.row, until));
+                let _ = guarded(|| self.scene(&job.row, self.end()));
             }
             at += group;
         }
     }
 
     /// Returns the scene of a row, without a camera.
-    fn scene(&self, row: &Row, until: Option<Instant>) -> Result<std::sync::Arc<Stage>, Fault> {
+    fn scene(&self, row: &Row, until: Option<Instant>) -> Result<Arc<Stage>, Fault> {
         let progress = Progress::new();
         let lock = || self.reading.lock().unwrap_or_else(PoisonError::into_inner);
         lock().push((until, progress.clone()));
@@ -202,7 +190,7 @@ impl Studio {
 
     /// Returns whether an earlier run has drawn the picture of a job.
     fn is_up_to_date(&self, job: &Job) -> bool {
-        self.manner.resume && self.finished(job).is_some()
+        self.arguments.resume && self.finished(job).is_some()
     }
 
     /// Returns the stamp of an earlier run, if it is right.
@@ -217,12 +205,12 @@ impl Studio {
 
     /// Returns the pool for a large picture, as soon as it is free; `None` for a small one.
     fn pool_for(&self, size: Size) -> Result<Option<MutexGuard<'_, Option<ThreadPool>>>, Fault> {
-        if size.area() <= LARGE || self.manner.threads == 1 {
+        if size.area() <= LARGE || self.arguments.threads() == 1 {
             return Ok(None);
         }
         let mut large = self.large.lock().unwrap_or_else(PoisonError::into_inner);
         if large.is_none() {
-            let pool = ThreadPoolBuilder::new().num_threads(self.manner.threads).build();
+            let pool = ThreadPoolBuilder::new().num_threads(self.arguments.threads()).build();
             *large = Some(pool.map_err(|error| Fault::Program(error.to_string()))?);
         }
         Ok(Some(large))
@@ -250,7 +238,7 @@ impl Attempt<'_> {
     fn picture(&mut self, renderer: &mut Renderer) -> Result<Drawn, Fault> {
         let (studio, job) = (self.studio, self.job);
         let folders = job.files.iter().map(|file| file.path.parent().unwrap_or(Path::new("")));
-        if studio.manner.resume
+        if studio.arguments.resume
             && let Some(stamp) = studio.finished(job)
         {
             // Whole files are read, and models with findings loaded, only for a report.
@@ -276,14 +264,12 @@ impl Attempt<'_> {
         self.spent.encode += begin.elapsed();
         let sum = |(file, content): (&LayerFile, &Vec<u8>)| FileSum {
             out: shown(&file.path),
-            sha256: studio.manner.reports.then(|| hash_of(content)),
+            sha256: studio.reports().then(|| hash_of(content)),
             bytes: content.len() as u64,
         };
-        let mut sums = job.files.iter().zip(&contents).map(sum);
-        let first = sums.next().unwrap_or_default();
+        let files = job.files.iter().zip(&contents).map(sum).collect();
         let camera = self.camera(&stage);
-        let layers = sums.collect();
-        Ok(Drawn { first, layers, camera, image, findings, unchanged: false })
+        Ok(Drawn { files, camera, image, findings, unchanged: false })
     }
 
     /// Writes the masks of a data set, and describes the picture for its tables.
@@ -293,7 +279,7 @@ impl Attempt<'_> {
         stage: &Stage,
     ) -> Result<Option<Box<DatasetImage>>, Fault> {
         let (studio, job) = (self.studio, self.job);
-        let Some(dataset @ (Dataset::Bop | Dataset::Coco)) = studio.manner.dataset else {
+        let Some(dataset @ (Dataset::Bop | Dataset::Coco)) = studio.arguments.dataset else {
             return Ok(None);
         };
         let wanted = || !studio.is_stopped();
@@ -317,7 +303,7 @@ impl Attempt<'_> {
         let names = options.has_ids().then(|| LayerNames::of(&stage.scene));
         let scene = (shown(&job.row.file), &*job.camera().name);
         let shot = stage.shot(job.size());
-        let folder = job.cameras_folder(self.studio.manner.dataset);
+        let folder = job.cameras_folder(self.studio.arguments.dataset);
         let frame = CameraFrame::new(&shot, (folder, &job.files), scene, (options, names.as_ref()));
         Some(Box::new(frame))
     }
@@ -325,18 +311,17 @@ impl Attempt<'_> {
     /// Returns the result of a picture that an earlier run has drawn.
     fn unchanged(&mut self, has_findings: bool) -> Result<Drawn, Fault> {
         let mut drawn = Drawn { unchanged: true, ..Drawn::default() };
-        let reports = self.studio.manner.reports;
+        let reports = self.studio.reports();
         if reports {
             let sum = |file: &LayerFile| -> std::io::Result<FileSum> {
                 let (out, bytes) = (shown(&file.path), file.path.metadata()?.len());
                 Ok(FileSum { out, sha256: Some(hash_of_file(&file.path)?), bytes })
             };
-            let mut sums = self.job.files.iter().map(|file| {
+            let sums = self.job.files.iter().map(|file| {
                 let shown = file.path.display();
                 sum(file).map_err(|error| Fault::Output(format!("{shown}: {error}")))
             });
-            drawn.first = sums.next().unwrap_or_else(|| Ok(FileSum::default()))?;
-            drawn.layers = sums.collect::<Result<_, _>>()?;
+            drawn.files = sums.collect::<Result<_, _>>()?;
         }
         // The cameras of a picture with layers are written again: another shard may have drawn it.
         let has_layers = self.job.row.parsed.options.layers.are_given();
@@ -357,7 +342,7 @@ impl Attempt<'_> {
         let mut stage = Stage::clone(&*loaded?);
         let options = &row.parsed.options;
         let failed = |failure: Failure| Fault::of(&failure);
-        look(&mut stage, &options.seeing, &job.camera().aim).map_err(failed)?;
+        look(&mut stage, &options.scene.seeing, &job.camera().aim).map_err(failed)?;
         stage.settings = options.accuracy.of_file(&stage.settings);
         let findings = stage.findings.iter().map(ToString::to_string);
         let findings = findings.chain(stage.notes.iter().cloned()).collect();

@@ -1,56 +1,50 @@
 //! Names of output files: a template with the fields of Python's format strings.
 
-use std::fmt::Write as _;
 use std::path::{Component, Path, PathBuf};
+
+use crate::cli::values;
 
 /// The largest width of a number.
 const MOST_WIDTH: usize = 20;
 
-/// A field of a template.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Field {
-    /// The folder of the model, as given, without a leading slash.
-    Dir,
-    /// The name of the model without extension.
-    Stem,
-    /// The name of the model.
-    Name,
-    /// The number of the picture in the whole list, from 0.
-    Index,
-    /// The number of the view, from 0.
-    View,
-    /// The name of the view.
-    ViewName,
-    /// The name of the layer.
-    Layer,
-    /// The extension of the format.
-    Ext,
+/// A field of a template. A number may have a width.
+struct Field {
+    name: &'static str,
+    is_number: bool,
+    /// Returns its value with at least this number of digits.
+    value: fn(&Fields<'_>, usize) -> String,
 }
 
 impl Field {
-    const ALL: [(&'static str, Self); 8] = [
-        ("dir", Self::Dir),
-        ("stem", Self::Stem),
-        ("name", Self::Name),
-        ("index", Self::Index),
-        ("view", Self::View),
-        ("view_name", Self::ViewName),
-        ("layer", Self::Layer),
-        ("ext", Self::Ext),
-    ];
+    const fn text(name: &'static str, value: fn(&Fields<'_>, usize) -> String) -> Self {
+        Self { name, is_number: false, value }
+    }
 
-    /// Returns whether it is a number, which may have a width.
-    const fn is_number(self) -> bool {
-        matches!(self, Self::Index | Self::View)
+    const fn number(name: &'static str, value: fn(&Fields<'_>, usize) -> String) -> Self {
+        Self { name, is_number: true, value }
     }
 }
+
+/// The fields: the folder of the model, as given, without a leading slash; its name without and
+/// with its extension; the number of the picture in the whole list and of the view, from 0; the
+/// names of the view and the layer; the extension of the format.
+const FIELDS: [Field; 8] = [
+    Field::text("dir", |fields, _| dir(fields.file)),
+    Field::text("stem", |fields, _| stem(fields.file)),
+    Field::text("name", |fields, _| name(fields.file)),
+    Field::number("index", |fields, width| format!("{:0width$}", fields.index)),
+    Field::number("view", |fields, width| format!("{:0width$}", fields.view)),
+    Field::text("view_name", |fields, _| fields.view_name.to_owned()),
+    Field::text("layer", |fields, _| fields.layer.to_owned()),
+    Field::text("ext", |fields, _| fields.ext.to_owned()),
+];
 
 /// A part of a template.
 #[derive(Clone, Debug, PartialEq, Eq)]
 enum Piece {
     Text(String),
-    /// A field; a number has at least `width` digits.
-    Field(Field, usize),
+    /// One of [`FIELDS`] by its index, and the least number of digits.
+    Field(usize, usize),
 }
 
 /// A template of file names.
@@ -69,10 +63,7 @@ pub(super) struct Fields<'a> {
 }
 
 impl Template {
-    /// Parses a template.
-    ///
-    /// # Errors
-    /// The reason, if a brace is unmatched or a field does not exist.
+    /// Parses a template. Fails with the reason if a brace is unmatched or a field does not exist.
     pub(super) fn parse(text: &str) -> Result<Self, String> {
         let mut pieces = Vec::new();
         let mut plain = String::new();
@@ -105,32 +96,19 @@ impl Template {
     /// Returns the default template: the name of the model, with the view if there are several, and
     /// the layer if each has its own file.
     pub(super) fn of_views(count: usize, by_layer: bool) -> Self {
-        let stem = Piece::Field(Field::Stem, 0);
-        let ending = [Piece::Text(".".to_owned()), Piece::Field(Field::Ext, 0)];
-        let view = [Piece::Text("-".to_owned()), Piece::Field(Field::View, 3)];
-        let view = if count > 1 { &view[..] } else { &[] };
-        let layer = [Piece::Text("-".to_owned()), Piece::Field(Field::Layer, 0)];
-        let layer = if by_layer { &layer[..] } else { &[] };
-        Self([&[stem], view, layer, &ending].concat())
+        let view = if count > 1 { "-{view:03}" } else { "" };
+        let layer = if by_layer { "-{layer}" } else { "" };
+        let template = Self::parse(&format!("{{stem}}{view}{layer}.{{ext}}"));
+        template.expect("the default template is valid")
     }
 
     /// Returns the file of a picture.
     pub(super) fn path(&self, fields: &Fields<'_>) -> PathBuf {
-        let mut path = String::new();
-        for piece in &self.0 {
-            // Writing to a string cannot fail.
-            let _ = match piece {
-                Piece::Text(text) => write!(path, "{text}"),
-                Piece::Field(Field::Dir, _) => write!(path, "{}", dir(fields.file)),
-                Piece::Field(Field::Stem, _) => write!(path, "{}", stem(fields.file)),
-                Piece::Field(Field::Name, _) => write!(path, "{}", name(fields.file)),
-                Piece::Field(Field::Index, width) => write!(path, "{:0width$}", fields.index),
-                Piece::Field(Field::View, width) => write!(path, "{:0width$}", fields.view),
-                Piece::Field(Field::ViewName, _) => write!(path, "{}", fields.view_name),
-                Piece::Field(Field::Layer, _) => write!(path, "{}", fields.layer),
-                Piece::Field(Field::Ext, _) => write!(path, "{}", fields.ext),
-            };
-        }
+        let value = |piece: &Piece| match piece {
+            Piece::Text(text) => text.clone(),
+            Piece::Field(field, width) => (FIELDS[*field].value)(fields, *width),
+        };
+        let path: String = self.0.iter().map(value).collect();
         // `a//b` and `a/./b` are `a/b`.
         Path::new(&path).components().collect()
     }
@@ -138,16 +116,17 @@ impl Template {
 
 fn field(text: &str) -> Result<Piece, String> {
     let (name, format) = text.split_once(':').map_or((text, None), |(a, b)| (a, Some(b)));
-    let Some((_, field)) = Field::ALL.iter().find(|(other, _)| *other == name) else {
-        let names: Vec<String> = Field::ALL.iter().map(|(name, _)| format!("{{{name}}}")).collect();
+    let Some(place) = FIELDS.iter().position(|field| field.name == name) else {
+        let names: Vec<String> = FIELDS.iter().map(|field| format!("{{{}}}", field.name)).collect();
         return Err(format!("there is no field {{{name}}}; the fields are {}", names.join(", ")));
     };
-    let Some(format) = format else { return Ok(Piece::Field(*field, 0)) };
-    let width = format.parse().ok().filter(|width| *width <= MOST_WIDTH && field.is_number());
+    let Some(format) = format else { return Ok(Piece::Field(place, 0)) };
+    let is_number = FIELDS[place].is_number;
+    let width = format.parse().ok().filter(|width| *width <= MOST_WIDTH && is_number);
     let width = width.ok_or_else(|| {
         format!("{{{text}}}: only index and view have a width, such as {{index:06}}")
     })?;
-    Ok(Piece::Field(*field, width))
+    Ok(Piece::Field(place, width))
 }
 
 /// Returns the name of a model without folders.
@@ -157,12 +136,7 @@ fn name(file: &Path) -> String {
 
 /// Returns the name of a model without extension; `.obj.gz` is one extension.
 pub(super) fn stem(file: &Path) -> String {
-    let name = Path::new(file.file_name().unwrap_or_default());
-    let inner = match name.extension() {
-        Some(ending) if ending.eq_ignore_ascii_case("gz") => name.with_extension(""),
-        _ => name.to_owned(),
-    };
-    inner.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    values::stem(file).to_string_lossy().into_owned()
 }
 
 /// Returns the folder of a model within the folder of the output: without a root, and without

@@ -9,6 +9,7 @@ use std::path::Path;
 use glam::{DMat3, DMat4, DVec3, DVec4};
 use marraztu::directions::DIRECTIONS;
 use marraztu_core::base::image::Size;
+use marraztu_core::base::rng::Rng;
 use marraztu_core::edit::framing::MODELS_FROM;
 use marraztu_core::scene::Pose;
 use marraztu_io::read_file;
@@ -33,10 +34,8 @@ pub(super) fn own_view() -> Vec<CameraView> {
     vec![CameraView { name: "0".to_owned(), aim: Aim::Options, size: None }]
 }
 
-/// Parses the value of `--views`.
-///
-/// # Errors
-/// The reason, if it is invalid or its file cannot be used.
+/// Parses the value of `--views`. Fails with the reason if it is invalid or its file cannot be
+/// used.
 pub(crate) fn parse_views(text: &str) -> Result<Vec<CameraView>, String> {
     let text = text.trim();
     if let Ok(count) = text.parse::<usize>() {
@@ -112,17 +111,9 @@ fn fibonacci(count: usize, seed: u64) -> Vec<CameraView> {
 
 /// Returns a uniformly distributed rotation: Shoemake, "Uniform Random Rotations", Graphics Gems
 /// III, 1992. The numbers are drawn by SplitMix64.
-#[expect(clippy::cast_precision_loss, reason = "53 bits fit in an f64")]
 fn random_rotation(seed: u64) -> DMat3 {
-    let mut state = seed;
-    let mut draw = || {
-        state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut bits = state;
-        bits = (bits ^ (bits >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        bits = (bits ^ (bits >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((bits ^ (bits >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    };
-    let (u, v, w) = (draw(), draw() * std::f64::consts::TAU, draw() * std::f64::consts::TAU);
+    let mut rng = Rng::new(seed);
+    let [u, v, w] = [1.0, std::f64::consts::TAU, std::f64::consts::TAU].map(|to| rng.unit() * to);
     let ((sin_v, cos_v), (sin_w, cos_w)) = (libm::sincos(v), libm::sincos(w));
     let (a, b) = ((1.0 - u).sqrt(), u.sqrt());
     DMat3::from_quat(glam::DQuat::from_xyzw(a * sin_v, a * cos_v, b * sin_w, b * cos_w))

@@ -5,7 +5,7 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::rng::Rng;
 use marraztu_core::scene::{
     Command, Corner, FileMaterial, Item, Light, LightId, LightKind, MaterialChoice, Mesh,
-    MeshSource, Model, NONE, Object, ObjectId, Part, SourceCorner, SpotOwner, Tracked, Undrawn,
+    MeshSource, Model, NONE, Object, ObjectId, Part, SourceCorner, SpotOwner, Tracked,
 };
 use marraztu_render::Renderer;
 
@@ -105,16 +105,9 @@ fn with_unused_material(model: &Shared<Model>, rng: &mut Rng) -> Shared<Model> {
     let mut materials = model.materials.clone();
     let material = shapes::material(rng);
     let texture = Some(shapes::texture(rng));
-    let (name, maps) = ("unused".to_owned(), shapes::maps(rng));
-    let unused = FileMaterial {
-        name,
-        material,
-        opacity: 0.7,
-        texture,
-        maps,
-        unlit: false,
-        undrawn: Undrawn::new(),
-    };
+    let maps = shapes::maps(rng);
+    let unused =
+        FileMaterial { opacity: 0.7, texture, maps, ..FileMaterial::new("unused", material) };
     materials.insert(at, unused);
     let moved = |material: u32| if material as usize >= at { material + 1 } else { material };
     let part = |part: &Part| Part { name: part.name.clone(), material: part.material.map(moved) };
@@ -134,13 +127,7 @@ fn with_unused_material(model: &Shared<Model>, rng: &mut Rng) -> Shared<Model> {
         smoothing: mesh.smoothing().clone(),
         ..MeshSource::default()
     };
-    Shared::new(Model {
-        name: model.name.clone(),
-        source: None,
-        companions: Vec::new(),
-        options: model.options,
-        mesh: Mesh::new(source).expect("it was a mesh before"),
-        materials,
-        edge_color: model.edge_color,
-    })
+    let mesh = Mesh::new(source).expect("it was a mesh before");
+    let (options, edge_color) = (model.options, model.edge_color);
+    Shared::new(Model { options, materials, edge_color, ..Model::of_mesh(&model.name, mesh) })
 }

@@ -16,8 +16,8 @@ use marraztu_core::edit::transform::{self, Sign};
 use marraztu_core::edit::{GesturePhase, placement};
 use marraztu_core::scene::{
     Aim, Attenuation, Camera, CameraId, Command, Fill, Frame, Item, Lens, Light, LightId,
-    LightKind, LoadOptions, Material, MaterialChoice, Mesh, MeshSource, Model, NONE, NormalLength,
-    Normals, Object, ObjectId, Observer, Orbit, Part, Pose, PresetId, Projection, Scene, Sides,
+    LightKind, Material, MaterialChoice, Mesh, MeshSource, Model, NONE, NormalLength, Normals,
+    Object, ObjectId, Observer, Orbit, Part, Pose, PresetId, Projection, Scene, Sides,
     SourceCorner, Spin, SpotOwner, Subject, Surface, Texture, Tracked, Transformation, View, Wrap,
 };
 
@@ -187,15 +187,7 @@ impl Hostile {
             }
         }
         let mesh = Mesh::new(source).ok()?;
-        Some(Shared::new(Model {
-            name: "hostile".to_owned(),
-            source: None,
-            companions: Vec::new(),
-            options: LoadOptions::default(),
-            mesh,
-            materials: Vec::new(),
-            edge_color: None,
-        }))
+        Some(Shared::new(Model::of_mesh("hostile", mesh)))
     }
 
     fn object(&mut self) -> Option<Object> {

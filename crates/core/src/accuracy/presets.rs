@@ -114,20 +114,17 @@ pub const ACCURACY_PRESETS: &[AccuracyPreset] = &[
 
 impl AccuracyPreset {
     /// The preset with this word.
-    #[must_use]
     pub fn named(word: &str) -> Option<&'static Self> {
         ACCURACY_PRESETS.iter().find(|preset| preset.word == word)
     }
 
     /// The presets of the dial, from the fast to the exact.
-    #[must_use]
     pub fn dial() -> &'static [Self] {
         let ideal = ACCURACY_PRESETS.iter().position(|it| matches!(it.points, Points::Ideal));
         &ACCURACY_PRESETS[..=ideal.expect("the ideal is a preset")]
     }
 
     /// The preset's settings. Axes that are models keep their choices.
-    #[must_use]
     pub fn of(&self, settings: &Settings) -> Settings {
         let default = Settings::default().modelled_as(settings);
         match self.points {
@@ -143,7 +140,6 @@ impl AccuracyPreset {
 
 impl AccuracyPreset {
     /// Describes the preset and its faults.
-    #[must_use]
     pub fn in_words(&self) -> String {
         match self.faults {
             [] => self.what.to_owned(),
@@ -155,7 +151,6 @@ impl AccuracyPreset {
 impl Settings {
     /// The ideal that pictures are judged against: every axis at its most exact choice, with 256
     /// samples per pixel, each lit. Axes that are models keep their choices.
-    #[must_use]
     pub fn ideal(&self) -> Self {
         // Some choices are the most exact ones only with several samples, so these come first.
         let start = Self { samples: Samples::TwoFiftySix, ..*self };
@@ -163,14 +158,12 @@ impl Settings {
     }
 
     /// The reference with the same number of samples: all other axes as in the ideal.
-    #[must_use]
     pub fn reference(&self) -> Self {
         Self { samples: self.samples, ..self.ideal() }
     }
 
     /// The picture that shows what one axis alone changes: these settings with this axis at its
     /// most exact choice, or at the default choice if it is a model.
-    #[must_use]
     pub fn exact_in(&self, axis: &Axis) -> Self {
         match axis.kind {
             AxisKind::Scored => axis.most_exact(self).of(self),
@@ -180,7 +173,6 @@ impl Settings {
 
     /// Whether a picture can be refined by more samples per pixel: the ancestors' algorithms have
     /// one, and half resolution is chosen to save time.
-    #[must_use]
     pub const fn can_refine(&self) -> bool {
         match (self.coverage, self.resolution) {
             (Coverage::ScanLines | Coverage::Points, _) | (_, Resolution::Half) => false,
@@ -190,13 +182,11 @@ impl Settings {
 
     /// The settings of a picture in a file: at least [`Self::REFINED`] samples per pixel, as in a
     /// window in which nothing moves.
-    #[must_use]
     pub const fn refined(self) -> Self {
         self.refined_to(Self::REFINED)
     }
 
     /// These settings with at least this number of samples per pixel, if they can be refined.
-    #[must_use]
     pub const fn refined_to(self, samples: Samples) -> Self {
         let is_more = samples.count() > self.samples.count();
         Self { samples: if is_more && self.can_refine() { samples } else { self.samples }, ..self }
@@ -206,14 +196,12 @@ impl Settings {
     pub const REFINED: Samples = Samples::Sixteen;
 
     /// These settings with the models of `others`.
-    #[must_use]
     pub fn modelled_as(&self, others: &Self) -> Self {
         let models = AXES.iter().filter(|axis| axis.kind == AxisKind::Model);
         models.fold(*self, |settings, axis| axis.chosen(others).of(&settings))
     }
 
     /// The differences from the default, in words: "Gouraud shading, nearest texture filter".
-    #[must_use]
     pub fn in_words(&self) -> String {
         let preset = ACCURACY_PRESETS.iter().find(|preset| preset.of(self) == *self);
         let differs = |axis: &&Axis| axis.chosen(self).word != axis.default_choice().word;

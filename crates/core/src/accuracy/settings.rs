@@ -7,49 +7,31 @@ use serde::{Deserialize, Serialize};
 /// How exactly a picture is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(default, deny_unknown_fields)]
+#[must_use]
+#[expect(missing_docs, reason = "the type of each field says it")]
 pub struct Settings {
-    /// The precision of lighting.
     pub arithmetic: Arithmetic,
-    /// Where light is evaluated.
     #[serde(rename = "shading", alias = "light")]
     pub light: LightAt,
-    /// Samples per pixel.
     pub samples: Samples,
-    /// The part of the pixels that is drawn.
     pub resolution: Resolution,
-    /// How a texture is filtered between its texels.
     pub filter: Filter,
-    /// The form of the highlight.
     pub specular: SpecularForm,
-    /// How the power of a highlight is computed.
     pub power: SpecularPower,
-    /// How colours become bytes.
     pub rounding: Rounding,
-    /// How normals are transformed.
     pub stretched: NormalMatrix,
-    /// The precision of vertex transforms.
     pub vertices: VertexArithmetic,
-    /// The fraction of a pixel that vertices are snapped to.
     pub subpixels: Subpixels,
-    /// Which pixels a triangle covers.
     pub coverage: Coverage,
-    /// How depths are stored.
     pub depth: DepthFormat,
-    /// How vertex attributes are interpolated across a triangle.
     pub interpolation: Interpolation,
-    /// How transparent surfaces are blended.
     pub transparency: Transparency,
-    /// How tangents for bumps are computed.
     pub tangents: Tangents,
-    /// How height and normal maps are filtered.
     #[serde(rename = "bumps")]
     pub bump_filter: BumpFilter,
-    /// How shadows are computed.
     #[serde(rename = "shadow-method")]
     pub shadow_method: ShadowMethod,
-    /// Where shadow rays start on smooth surfaces.
     pub terminator: Terminator,
-    /// The colour space in which light is computed.
     #[serde(rename = "values")]
     pub light_values: LightValues,
     /// An axis of older scene files.
@@ -104,26 +86,20 @@ pub enum LightAt {
 pub enum Samples {
     /// One, at the pixel's centre.
     #[default]
-    One,
+    One = 1,
     /// Four.
-    Four,
+    Four = 4,
     /// Sixteen.
-    Sixteen,
+    Sixteen = 16,
     /// Sixty-four.
-    SixtyFour,
+    SixtyFour = 64,
     /// Two hundred and fifty-six: the ideal.
-    TwoFiftySix,
+    TwoFiftySix = 256,
 }
 
 impl From<Samples> for u16 {
     fn from(samples: Samples) -> Self {
-        match samples {
-            Samples::One => 1,
-            Samples::Four => 4,
-            Samples::Sixteen => 16,
-            Samples::SixtyFour => 64,
-            Samples::TwoFiftySix => 256,
-        }
+        samples as Self
     }
 }
 
@@ -141,19 +117,9 @@ impl Samples {
     pub const ALL: [Self; 5] =
         [Self::One, Self::Four, Self::Sixteen, Self::SixtyFour, Self::TwoFiftySix];
 
-    /// The steps of refinement while nothing moves. The ideal would take too long.
-    pub const REFINING: [Self; 4] = [Self::One, Self::Four, Self::Sixteen, Self::SixtyFour];
-
     /// The number of samples.
-    #[must_use]
     pub const fn count(self) -> u32 {
-        match self {
-            Self::One => 1,
-            Self::Four => 4,
-            Self::Sixteen => 16,
-            Self::SixtyFour => 64,
-            Self::TwoFiftySix => 256,
-        }
+        self as u32
     }
 }
 
@@ -184,7 +150,6 @@ pub enum Filter {
 
 impl Filter {
     /// Returns whether the filter reads smaller copies of the texture.
-    #[must_use]
     pub const fn reads_mips(self) -> bool {
         match self {
             Self::Nearest | Self::Bilinear => false,
@@ -385,7 +350,6 @@ pub struct ShadowMapForm {
 
 impl ShadowMethod {
     /// The form of its shadow maps, if it uses any.
-    #[must_use]
     pub const fn map(self) -> Option<ShadowMapForm> {
         let (side, is_filtered) = match self {
             Self::Map512 => (512, false),

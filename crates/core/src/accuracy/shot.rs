@@ -19,7 +19,6 @@ pub struct Shot {
 
 impl Shot {
     /// A shot of a scene.
-    #[must_use]
     pub fn new(scene: &Scene, view: &View, settings: &Settings, size: Size) -> Self {
         Self { scene: scene.clone(), view: view.clone(), settings: *settings, size }
     }

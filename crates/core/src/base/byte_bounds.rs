@@ -55,7 +55,6 @@ impl Cells {
 impl ByteBounds {
     /// Builds the levels for a grid with rows of `width`. Each element is a pair of bounds, so a
     /// plain byte is given twice.
-    #[must_use]
     pub fn new(width: usize, bytes: impl Iterator<Item = [u8; 2]>) -> Self {
         let mut levels = vec![Cells::new(width, 1 << FINEST, bytes)];
         while let Some(last) = levels.last()
@@ -68,7 +67,6 @@ impl ByteBounds {
 
     /// Returns bounds of the bytes in some columns and rows, which must be within the grid. In an
     /// empty grid, the smallest is above the largest.
-    #[must_use]
     #[inline]
     pub fn over(&self, columns: &RangeInclusive<usize>, rows: &RangeInclusive<usize>) -> [u8; 2] {
         // The finest level with few enough cells gives the tightest bounds at a constant cost.

@@ -33,26 +33,22 @@ impl Color {
     ];
 
     /// Finds the colour with this name, in upper or lower case.
-    #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         let is_it = |(own, _): &&(&str, Self)| own.eq_ignore_ascii_case(name);
         Self::NAMED.iter().find(is_it).map(|(_, color)| *color)
     }
 
     /// Returns the factors from 0 to 1 that the bytes represent.
-    #[must_use]
     pub fn factors(self) -> [f64; 3] {
         self.0.map(|byte| f64::from(byte) / 255.0)
     }
 
     /// Returns the nearest colour to three factors, which are clamped to 0 to 1.
-    #[must_use]
     pub fn from_factors(factors: [f64; 3]) -> Self {
         Self(factors.map(byte))
     }
 
     /// Returns the colour as an opaque pixel.
-    #[must_use]
     pub fn opaque(self) -> [u8; 4] {
         let [r, g, b] = self.0;
         [r, g, b, 255]
@@ -60,7 +56,6 @@ impl Color {
 }
 
 /// Returns the byte nearest to 255 times a factor: clamped once, rounded to nearest. NaN gives 0.
-#[must_use]
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped just before")]
 pub fn byte(factor: f64) -> u8 {
     // Unlike `clamp`, `max` returns the other number if one is NaN.
@@ -73,14 +68,12 @@ pub fn byte(factor: f64) -> u8 {
 ///   c / 12.92 up to 0.04045,   ((c + 0.055) / 1.055)^2.4 above
 ///
 /// Values above 1 follow the same curve; NaN and values below 0 give 0. IEC 61966-2-1:1999.
-#[must_use]
 pub fn linear(stored: f64) -> f64 {
     let stored = stored.max(0.0);
     if stored <= 0.04045 { stored / 12.92 } else { libm::pow((stored + 0.055) / 1.055, 2.4) }
 }
 
 /// Encodes a linear value as an sRGB colour: the inverse of [`linear`].
-#[must_use]
 pub fn encoded(linear: f64) -> f64 {
     let linear = linear.max(0.0);
     if linear <= 0.003_130_8 {

@@ -53,13 +53,11 @@ pub struct Size {
 
 impl Size {
     /// Creates a size of `width` by `height` pixels.
-    #[must_use]
     pub const fn new(width: usize, height: usize) -> Self {
         Self { width, height }
     }
 
     /// Returns the number of pixels.
-    #[must_use]
     pub const fn area(self) -> usize {
         self.width * self.height
     }
@@ -67,7 +65,6 @@ impl Size {
 
 impl Picture {
     /// Creates a picture of one colour.
-    #[must_use]
     pub fn filled(size: Size, pixel: [u8; 4]) -> Self {
         let pixels = vec![pixel; size.area()];
         let derived = Derived::default();
@@ -76,7 +73,6 @@ impl Picture {
 
     /// Creates a picture of these pixels, row by row from the top; `None` if their number does not
     /// fit.
-    #[must_use]
     pub fn from_pixels(size: Size, pixels: Vec<[u8; 4]>) -> Option<Self> {
         (pixels.len() == size.area()).then_some(Self {
             width: size.width,
@@ -87,19 +83,16 @@ impl Picture {
     }
 
     /// Returns width and height.
-    #[must_use]
     pub const fn size(&self) -> Size {
         Size::new(self.width, self.height)
     }
 
     /// Returns all pixels, row by row from the top.
-    #[must_use]
     pub fn pixels(&self) -> &[[u8; 4]] {
         &self.pixels
     }
 
     /// Returns all pixels, row by row from the top, without copying them.
-    #[must_use]
     pub fn into_pixels(self) -> Vec<[u8; 4]> {
         self.pixels
     }
@@ -111,27 +104,23 @@ impl Picture {
     }
 
     /// Returns the smallest alpha of all pixels; 255 for an empty picture.
-    #[must_use]
     pub fn least_alpha(&self) -> u8 {
         self.found().least
     }
 
     /// Returns whether the alpha of any pixel is neither 0 nor 255.
-    #[must_use]
     pub fn has_partial_alpha(&self) -> bool {
         self.found().partial
     }
 
     /// Returns whether the picture, as an opacity map, has values between transparent and opaque.
     /// Its alpha counts, or its colour if all pixels are opaque.
-    #[must_use]
     pub fn fades(&self) -> bool {
         let Found { least, partial, grey } = self.found();
         if least == 255 { grey } else { partial }
     }
 
     /// Bounds of the alphas, by columns and rows from the upper left.
-    #[must_use]
     pub fn alpha_bounds(&self) -> &ByteBounds {
         let of = |[_, _, _, alpha]: &[u8; 4]| [*alpha; 2];
         get_or_compute(&self.derived.alphas, || self.bounds(of))
@@ -139,7 +128,6 @@ impl Picture {
 
     /// Bounds of the colour components, and so of any mean of them, by columns and rows from the
     /// upper left.
-    #[must_use]
     pub fn color_bounds(&self) -> &ByteBounds {
         let of = |[r, g, b, _]: &[u8; 4]| [*r.min(g).min(b), *r.max(g).max(b)];
         get_or_compute(&self.derived.colors, || self.bounds(of))
@@ -165,7 +153,6 @@ impl Picture {
     }
 
     /// Returns the pixel in column `x` of row `y`, both counted from the upper left.
-    #[must_use]
     pub fn pixel(&self, x: usize, y: usize) -> [u8; 4] {
         self.pixels[y * self.width + x]
     }

@@ -3,7 +3,6 @@
 use rayon::prelude::*;
 
 /// Joins lists; all threads copy.
-#[must_use]
 pub fn concatenated<T: Copy + Send + Sync>(mut lists: Vec<Vec<T>>) -> Vec<T> {
     if lists.len() == 1 {
         return lists.pop().unwrap_or_default();
@@ -31,7 +30,6 @@ pub fn concatenated<T: Copy + Send + Sync>(mut lists: Vec<Vec<T>>) -> Vec<T> {
 ///
 /// This is an LSD radix sort with digits of eleven bits: Knuth, "The Art of Computer Programming"
 /// 3, 5.2.5. `keys[i]` belongs to number i; only the low `bits` bits of the keys are compared.
-#[must_use]
 pub fn sorted_by_keys(keys: Vec<u32>, bits: u32) -> Vec<u32> {
     const DIGIT: u32 = 11;
     let count = u32::try_from(keys.len()).expect("fewer than 2^32 keys");

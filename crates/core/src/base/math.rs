@@ -33,7 +33,6 @@ impl Axis {
     pub const ALL: [Self; 3] = [Self::X, Self::Y, Self::Z];
 
     /// Returns the unit vector of the axis.
-    #[must_use]
     pub const fn unit(self) -> DVec3 {
         match self {
             Self::X => DVec3::X,
@@ -43,7 +42,6 @@ impl Axis {
     }
 
     /// Returns the index of the axis: 0, 1 or 2.
-    #[must_use]
     pub const fn index(self) -> usize {
         self as usize
     }
@@ -60,7 +58,6 @@ pub fn each<A, B>([a, b, c]: [A; 3], mut f: impl FnMut(A) -> B) -> [B; 3] {
 /// Normalises a vector of any length; `None` if it is zero or not finite.
 ///
 /// The largest component is scaled to 1 first, so squares neither overflow nor vanish.
-#[must_use]
 pub fn unit(v: DVec3) -> Option<DVec3> {
     let largest = v.abs().max_element();
     if !(largest > 0.0 && v.is_finite()) {
@@ -74,7 +71,6 @@ pub fn unit(v: DVec3) -> Option<DVec3> {
 /// Returns the rotation about `axis` (of length 1) by the right-hand rule.
 ///
 /// Rodrigues' formula: `R = cos a I + sin a [k]x + (1 - cos a) k k'`.
-#[must_use]
 pub fn rotation(axis: DVec3, radians: f64) -> DMat3 {
     DMat3::from_axis_angle(axis, radians)
 }
@@ -82,7 +78,6 @@ pub fn rotation(axis: DVec3, radians: f64) -> DMat3 {
 /// Builds a right-handed frame with Z along `z` and Y as near to `y` as possible (Gram-Schmidt, Z
 /// first, X = Y x Z). If both are parallel or one of them vanishes, the undetermined axes come from
 /// `fallback`, which must be orthonormal.
-#[must_use]
 pub fn frame(z: DVec3, y: DVec3, fallback: DMat3) -> DMat3 {
     let z = unit(z).unwrap_or(fallback.z_axis);
     // If the part of y across z is shorter than its rounding error, its direction is arbitrary.
@@ -104,7 +99,6 @@ pub fn frame(z: DVec3, y: DVec3, fallback: DMat3) -> DMat3 {
 ///
 /// If the observer looks straight up or down, the right vector of `last` is kept; if eye and target
 /// are equal, all of `last` is. The frame never contains NaN and never jumps.
-#[must_use]
 pub fn look_at(eye: DVec3, target: DVec3, up: DVec3, last: DMat3) -> DMat3 {
     let Some(z) = unit(eye - target) else { return last };
     let x = unit(up.cross(z)).filter(|_| unit(up).is_some_and(|up| up.cross(z).length() > 1e-6));
@@ -120,7 +114,6 @@ pub fn look_at(eye: DVec3, target: DVec3, up: DVec3, last: DMat3) -> DMat3 {
 /// This is the inverse transpose up to a positive factor, and is defined for a singular `m` as
 /// well. The sign keeps the normals of a mirrored object on its outer side. `m` is scaled by
 /// [`at_power_of_two`] first, so the squares of normals neither overflow nor vanish, even in f32.
-#[must_use]
 pub fn normal_matrix(m: DMat3) -> DMat3 {
     let m = at_power_of_two(m);
     let cofactors = DMat3::from_cols(
@@ -132,14 +125,12 @@ pub fn normal_matrix(m: DMat3) -> DMat3 {
 }
 
 /// Scales `m` by a power of two that brings its largest entry between 1/2 and 1.
-#[must_use]
 pub fn at_power_of_two(m: DMat3) -> DMat3 {
     m * power_of_two_near(1.0 / largest_entry(m))
 }
 
 /// Returns the largest power of two that is at most `x`, for a normal `x` above 0; otherwise 1.
 /// Multiplying a number by it keeps all digits.
-#[must_use]
 pub fn power_of_two_near(x: f64) -> f64 {
     if x.is_normal() && x > 0.0 { libm::ldexp(1.0, libm::ilogb(x)) } else { 1.0 }
 }
@@ -149,7 +140,6 @@ fn largest_entry(m: DMat3) -> f64 {
 }
 
 /// Returns whether `m` has rank 3, relative to its own size.
-#[must_use]
 pub fn has_full_rank(m: DMat3) -> bool {
     let size = largest_entry(m);
     m.is_finite() && size > 0.0 && ((m * (1.0 / size)).determinant().abs() > 1e-15)
@@ -158,7 +148,6 @@ pub fn has_full_rank(m: DMat3) -> bool {
 /// Returns the perspective projection. `half_angle` (radians) is visible to each side of the view
 /// axis across the shorter side of the picture; the longer side shows more. Depth is 1 at `near`, 0
 /// at `far`.
-#[must_use]
 pub fn perspective(half_angle: f64, near: f64, far: f64, size: Size) -> DMat4 {
     let focal = 1.0 / libm::tan(half_angle);
     let DVec2 { x, y } = shorter_side(size) * focal;
@@ -173,7 +162,6 @@ pub fn perspective(half_angle: f64, near: f64, far: f64, size: Size) -> DMat4 {
 
 /// Returns the orthographic projection. `half_size` is visible to each side of the view axis across
 /// the shorter side of the picture. Depth is 1 at `near`, 0 at `far`.
-#[must_use]
 pub fn orthographic(half_size: f64, near: f64, far: f64, size: Size) -> DMat4 {
     let DVec2 { x, y } = shorter_side(size) / half_size;
     let range = far - near;
@@ -194,13 +182,11 @@ fn shorter_side(size: Size) -> DVec2 {
 }
 
 /// Returns the matrix of a frame at a position.
-#[must_use]
 pub fn placed(axes: DMat3, origin: DVec3) -> DMat4 {
     DMat4::from_mat3_translation(axes, origin)
 }
 
 /// Returns whether all numbers of two matrices have the same bits.
-#[must_use]
 pub fn same_bits(a: &DMat4, b: &DMat4) -> bool {
     a.to_cols_array().map(f64::to_bits) == b.to_cols_array().map(f64::to_bits)
 }

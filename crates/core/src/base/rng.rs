@@ -14,7 +14,6 @@ pub struct Rng(u64);
 
 impl Rng {
     /// Creates the generator of a seed.
-    #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self(seed)
     }

@@ -15,20 +15,17 @@ impl<T> Shared<T> {
     }
 
     /// Returns whether both are the same value in memory.
-    #[must_use]
     pub fn same(a: &Self, b: &Self) -> bool {
         Arc::ptr_eq(&a.0, &b.0)
     }
 
     /// Returns the address of the value. Different values have different addresses while both are
     /// alive.
-    #[must_use]
     pub fn address(this: &Self) -> usize {
         Arc::as_ptr(&this.0).addr()
     }
 
     /// Returns whether both are the same value in memory, or both are `None`.
-    #[must_use]
     pub fn both_same(a: Option<&Self>, b: Option<&Self>) -> bool {
         match (a, b) {
             (Some(a), Some(b)) => Self::same(a, b),

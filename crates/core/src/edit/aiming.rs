@@ -2,11 +2,9 @@
 
 use glam::DVec3;
 
-use super::{GesturePhase, Refusal, framing, lights, placement, set_transform};
+use super::{Change, GesturePhase, Refusal, framing, lights, placement, set_transform};
 use crate::base::math;
-use crate::scene::{
-    Aim, Anchor, Command, ItemId, LightId, LightOrigin, Scene, SpotOwner, Tracked, View,
-};
+use crate::scene::{Aim, Anchor, ItemId, LightId, LightOrigin, Scene, SpotOwner, Tracked, View};
 
 /// The distance of a sun's mark from the middle of the scene, in the scene's radii.
 const SUN: f64 = 0.6;
@@ -28,7 +26,6 @@ pub fn can_aim(scene: &Scene, view: &View) -> Result<LightId, Refusal> {
 ///
 /// A sun is infinitely far away, so its position is next to the scene, on the side from which it
 /// shines. Ambient light has no position, so the result is `None`.
-#[must_use]
 pub fn stands(scene: &Scene, view: &View, id: LightId) -> Option<Aim> {
     let LightOrigin { position, direction } =
         scene.light_origin(view, &scene.lights.get(id)?.kind)?;
@@ -51,11 +48,7 @@ pub fn stands(scene: &Scene, view: &View, id: LightId) -> Option<Aim> {
 ///
 /// # Errors
 /// If the scene has no object, or the light cannot be aimed or is in the object's centre.
-pub fn aim_at_selection(
-    scene: &Scene,
-    view: &View,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub fn aim_at_selection(scene: &Scene, view: &View, phase: GesturePhase) -> Change {
     let id = can_aim(scene, view)?;
     let (object, _) = set_transform::selected_object(scene, view)?;
     let sphere = framing::sphere(scene, view, &[object]).ok_or(Refusal::NothingToFrame)?;
@@ -71,13 +64,7 @@ pub fn aim_at_selection(
 ///
 /// # Errors
 /// If the light cannot be aimed or is at that point.
-pub fn aim(
-    scene: &Scene,
-    view: &View,
-    id: LightId,
-    at: DVec3,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub fn aim(scene: &Scene, view: &View, id: LightId, at: DVec3, phase: GesturePhase) -> Change {
     let light = scene.lights.get(id).ok_or(Refusal::Gone)?;
     let from = stands(scene, view, id).ok_or(Refusal::NotAimed)?.position;
     let direction = math::unit(at - from).ok_or(Refusal::AimedAtItself)?;

@@ -11,7 +11,6 @@ const UPRIGHT: f64 = 1e-6;
 
 /// Returns the equivalent angles with the smallest a and c: 120 degrees about B are 0, 120, 0 and
 /// not 180, 60, 180.
-#[must_use]
 pub(super) fn plainest(degrees: DVec3) -> DVec3 {
     let aside = |angles: DVec3| angles.x.abs() + angles.z.abs();
     let other = other(degrees).map(within_half_a_turn);
@@ -20,7 +19,6 @@ pub(super) fn plainest(degrees: DVec3) -> DVec3 {
 }
 
 /// Returns the equivalent angles nearest to `last`. `turn` computes the rotation of angles.
-#[must_use]
 pub fn nearest(degrees: DVec3, last: DVec3, turn: impl Fn(DVec3) -> DMat3) -> DVec3 {
     let mut all = vec![degrees, other(degrees)];
     if (degrees.y.abs() - 90.0).abs() < UPRIGHT {
@@ -44,7 +42,6 @@ pub fn nearest(degrees: DVec3, last: DVec3, turn: impl Fn(DVec3) -> DMat3) -> DV
 }
 
 /// Returns whether two rotations are equal up to rounding.
-#[must_use]
 pub fn same_turn(a: DMat3, b: DMat3) -> bool {
     let difference = a - b;
     let columns = [difference.x_axis, difference.y_axis, difference.z_axis];

@@ -2,19 +2,17 @@
 
 use glam::{DMat4, DVec3};
 
-use super::{GesturePhase, Refusal, set_transform, steps};
+use super::{Change, GesturePhase, Refusal, set_transform, steps};
 use crate::base::math::Axis;
 use crate::scene::{Bounds, Command, ItemId, Object, ObjectId, Scene, View};
 
 /// Returns the bounding box of an object in the world.
-#[must_use]
 pub fn world_box(object: &Object, time: f64) -> Option<Bounds> {
     Bounds::of(object.placed_vertices(time))
 }
 
 /// Returns the height of the ground: of the highest visible and level ground or plane shape, else
 /// 0. Excludes `id`.
-#[must_use]
 pub fn ground(scene: &Scene, id: ObjectId) -> f64 {
     let planes = scene.objects.iter().filter(|(other, object)| {
         let up = object.placement.now().y_axis.truncate();
@@ -28,7 +26,7 @@ pub fn ground(scene: &Scene, id: ObjectId) -> f64 {
 ///
 /// # Errors
 /// If no object is selected, or it is empty, locked, or already on the ground.
-pub fn drop_to_ground(scene: &Scene, view: &View, phase: GesturePhase) -> Result<Command, Refusal> {
+pub fn drop_to_ground(scene: &Scene, view: &View, phase: GesturePhase) -> Change {
     let (id, object) = set_transform::selected_object(scene, view)?;
     let bounds = world_box(object, view.time).ok_or(Refusal::NoPolygons)?;
     let by = ground(scene, id) - bounds.min.y;
@@ -42,7 +40,7 @@ pub fn drop_to_ground(scene: &Scene, view: &View, phase: GesturePhase) -> Result
 ///
 /// # Errors
 /// If no object is selected, or it is locked or has not been moved.
-pub fn reset(scene: &Scene, view: &View, phase: GesturePhase) -> Result<Command, Refusal> {
+pub fn reset(scene: &Scene, view: &View, phase: GesturePhase) -> Change {
     let (id, object) = set_transform::selected_object(scene, view)?;
     if *object.placement.now() == DMat4::IDENTITY {
         return Err(Refusal::NotTransformed);
@@ -61,7 +59,7 @@ pub fn align(
     others: &[ItemId],
     axis: Axis,
     phase: GesturePhase,
-) -> Result<Command, Refusal> {
+) -> Change {
     let (_, object) = set_transform::selected_object(scene, view)?;
     let middle = |object: &Object| Some(world_box(object, view.time)?.centre()[axis.index()]);
     let to = middle(object).ok_or(Refusal::NoPolygons)?;
@@ -81,13 +79,7 @@ pub fn align(
 }
 
 /// Moves an object along the world's axes.
-fn moved(
-    scene: &Scene,
-    view: &View,
-    id: ObjectId,
-    by: DVec3,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+fn moved(scene: &Scene, view: &View, id: ObjectId, by: DVec3, phase: GesturePhase) -> Change {
     let placement = *scene.objects.get(id).ok_or(Refusal::Gone)?.placement.now();
     let to = DMat4::from_translation(by) * placement;
     set_transform::object(scene, view, id, to, phase)

@@ -6,7 +6,7 @@ use glam::{DMat4, DVec3};
 
 use super::arrange::world_box;
 use super::items::{insert_objects, put_camera, put_light};
-use super::{Refusal, items, selection, several};
+use super::{Change, Refusal, items, selection, several};
 use crate::scene::{
     AnchorMut, Camera, CameraId, CameraMode, Command, ItemId, Light, LightId, Object, ObjectId,
     Pose, Scene, SpotOwner, Tracked, View,
@@ -28,7 +28,6 @@ pub struct Copies {
 
 impl Copies {
     /// Returns whether all three lists are empty.
-    #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.objects.is_empty() && self.cameras.is_empty() && self.lights.is_empty()
     }
@@ -39,7 +38,7 @@ impl Copies {
 ///
 /// # Errors
 /// If nothing is selected.
-pub fn duplicate(scene: &Scene, view: &View, others: &[ItemId]) -> Result<Command, Refusal> {
+pub fn duplicate(scene: &Scene, view: &View, others: &[ItemId]) -> Change {
     let all = selection::selected(view).into_iter().chain(others.iter().copied());
     let object = |item| match item {
         ItemId::Object(id) => scene.objects.get(id),
@@ -57,7 +56,7 @@ pub fn duplicate(scene: &Scene, view: &View, others: &[ItemId]) -> Result<Comman
 ///
 /// # Errors
 /// If an item is invalid in the scene.
-pub fn insert(scene: &Scene, view: &View, copies: Copies) -> Result<Command, Refusal> {
+pub fn insert(scene: &Scene, view: &View, copies: Copies) -> Change {
     let Copies { objects, cameras, lights } = copies;
     let by = free_place(scene, view, &objects.iter().map(|(_, it)| it).collect::<Vec<_>>());
     let mut after = scene.clone();

@@ -12,7 +12,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::{GesturePhase, Refusal, set_transform};
+use super::{Change, GesturePhase, Refusal, set_transform};
 use crate::base::math;
 use crate::scene::{
     Camera, CameraMode, Command, Item, Lens, Object, ObjectId, Observer, Pose, Scene, Tracked, View,
@@ -46,7 +46,6 @@ pub enum Side {
 
 impl Side {
     /// Returns the axes of a camera that looks from this side.
-    #[must_use]
     pub const fn axes(self) -> DMat3 {
         match self {
             Self::Front => DMat3::IDENTITY,
@@ -69,7 +68,7 @@ const MARGIN: f64 = 1.0 / 20.0;
 ///
 /// # Errors
 /// If no object is selected, or it has no vertices.
-pub fn selection(scene: &Scene, view: &View) -> Result<Command, Refusal> {
+pub fn selection(scene: &Scene, view: &View) -> Change {
     let (id, _) = set_transform::selected_object(scene, view)?;
     objects(scene, view, &[id])
 }
@@ -78,7 +77,7 @@ pub fn selection(scene: &Scene, view: &View) -> Result<Command, Refusal> {
 ///
 /// # Errors
 /// If nothing is visible.
-pub fn all(scene: &Scene, view: &View) -> Result<Command, Refusal> {
+pub fn all(scene: &Scene, view: &View) -> Change {
     objects(scene, view, &shown(scene, view))
 }
 
@@ -94,7 +93,7 @@ fn shown(scene: &Scene, view: &View) -> Vec<ObjectId> {
 ///
 /// # Errors
 /// If no object has vertices.
-pub fn objects(scene: &Scene, view: &View, ids: &[ObjectId]) -> Result<Command, Refusal> {
+pub fn objects(scene: &Scene, view: &View, ids: &[ObjectId]) -> Change {
     framed(scene, view, ids, scene.selected_camera(view).pose.now().axes, 0.0)
 }
 
@@ -103,7 +102,7 @@ pub fn objects(scene: &Scene, view: &View, ids: &[ObjectId]) -> Result<Command, 
 ///
 /// # Errors
 /// If nothing is visible.
-pub fn models(scene: &Scene, view: &View, [right, up]: [f64; 2]) -> Result<Command, Refusal> {
+pub fn models(scene: &Scene, view: &View, [right, up]: [f64; 2]) -> Change {
     let axes =
         math::rotation(DVec3::Y, right.to_radians()) * math::rotation(DVec3::X, -up.to_radians());
     framed(scene, view, &shown(scene, view), axes, MARGIN)
@@ -129,7 +128,6 @@ pub fn from_pose(scene: &Scene, view: &View, pose: Pose, half_angle: Option<f64>
 }
 
 /// Returns the distance at which [`models`] shows a sphere of radius `r`.
-#[must_use]
 pub fn models_distance(first: &Lens, r: f64) -> f64 {
     lens(first, r * (1.0 + MARGIN)).0
 }
@@ -138,14 +136,13 @@ pub fn models_distance(first: &Lens, r: f64) -> f64 {
 ///
 /// # Errors
 /// If no object is selected, or it has no vertices.
-pub fn side(scene: &Scene, view: &View, side: Side) -> Result<Command, Refusal> {
+pub fn side(scene: &Scene, view: &View, side: Side) -> Change {
     let (id, _) = set_transform::selected_object(scene, view)?;
     framed(scene, view, &[id], side.axes(), 0.0)
 }
 
 /// Returns the bounding sphere of objects. For several objects, it encloses their spheres and is
 /// centred in the box around these. `None` if no object has vertices.
-#[must_use]
 pub fn sphere(scene: &Scene, view: &View, ids: &[ObjectId]) -> Option<Sphere> {
     let spheres: Vec<(DVec3, f64)> = ids
         .iter()
@@ -163,7 +160,6 @@ pub fn sphere(scene: &Scene, view: &View, ids: &[ObjectId]) -> Option<Sphere> {
 }
 
 /// Returns the distance from the centre of a sphere of radius `r`, and the lens for viewing it.
-#[must_use]
 pub fn lens(lens: &Lens, r: f64) -> (f64, Lens) {
     let distance = r / libm::sin(lens.half_angle.to_radians());
     let near = 1.0_f64.min((distance - r) / 2.0).min(distance / 1000.0);
@@ -180,13 +176,7 @@ pub fn lens(lens: &Lens, r: f64) -> (f64, Lens) {
 }
 
 /// Frames these objects with these camera axes. The margin is a fraction of the distance.
-fn framed(
-    scene: &Scene,
-    view: &View,
-    ids: &[ObjectId],
-    axes: DMat3,
-    margin: f64,
-) -> Result<Command, Refusal> {
+fn framed(scene: &Scene, view: &View, ids: &[ObjectId], axes: DMat3, margin: f64) -> Change {
     if view.observer == Observer::Object && view.object.is_some() {
         return Err(Refusal::ObjectLooks);
     }

@@ -5,9 +5,9 @@
 
 use glam::{DMat3, DVec3};
 
-use super::{GesturePhase, Refusal, aiming, set_transform, steps, transform};
+use super::{Change, GesturePhase, Refusal, aiming, set_transform, steps, transform};
 use crate::base::math::{self, Axis};
-use crate::scene::{Command, Frame, ItemId, Observer, Scene, Subject, Transformation, View};
+use crate::scene::{Frame, ItemId, Observer, Scene, Subject, Transformation, View};
 
 /// The position and the axes of the selected item's handles.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -33,19 +33,16 @@ pub enum Amount {
 
 impl Pivot {
     /// Returns the direction of an axis in the world; `None` if the axis has length 0.
-    #[must_use]
     pub fn direction(&self, axis: Axis) -> Option<DVec3> {
         math::unit(self.axes.col(axis.index()))
     }
 
     /// Returns the length of a unit along an axis, in world units.
-    #[must_use]
     pub fn unit(&self, axis: Axis) -> f64 {
         self.axes.col(axis.index()).length()
     }
 
     /// Transforms a world vector into the frame; `None` if the frame is flat.
-    #[must_use]
     pub fn in_frame(&self, v: DVec3) -> Option<DVec3> {
         let inside = self.axes.inverse() * v;
         (math::has_full_rank(self.axes) && inside.is_finite()).then_some(inside)
@@ -53,7 +50,6 @@ impl Pivot {
 
     /// Returns the handedness: -1 if the frame is mirrored and turns therefore run the other way in
     /// the world, else 1.
-    #[must_use]
     pub fn hand(&self) -> f64 {
         if self.axes.determinant() < 0.0 { -1.0 } else { 1.0 }
     }
@@ -113,12 +109,7 @@ pub fn pivot(scene: &Scene, view: &View) -> Result<Pivot, Refusal> {
 ///
 /// # Errors
 /// If the item cannot be transformed in this way.
-pub fn transform(
-    scene: &Scene,
-    view: &View,
-    amount: Amount,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub fn transform(scene: &Scene, view: &View, amount: Amount, phase: GesturePhase) -> Change {
     match amount {
         Amount::Move(delta) => transform::translate(scene, view, delta, phase),
         Amount::Turn(axis, radians) => transform::rotate(scene, view, axis, radians, phase),
@@ -127,7 +118,6 @@ pub fn transform(
 }
 
 /// Rounds an amount to whole steps of the keys x, y and z.
-#[must_use]
 pub fn snapped(scene: &Scene, view: &View, amount: Amount) -> Amount {
     match amount {
         Amount::Move(delta) => {

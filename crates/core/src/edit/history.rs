@@ -43,7 +43,6 @@ impl Default for History {
 
 impl History {
     /// Creates a history without steps, for a scene that counts as saved.
-    #[must_use]
     pub const fn new() -> Self {
         let looking = (Gesture::Whole, Vec::new());
         Self { steps: Vec::new(), position: 0, open: Gesture::Whole, looking, saved: Some(0) }
@@ -141,14 +140,12 @@ impl History {
     }
 
     /// Returns the selection before the step that undo would undo.
-    #[must_use]
     pub fn selected_before(&self) -> Option<&Selected> {
         let last = self.steps.get(self.position.checked_sub(1)?)?;
         last.selected.as_ref().map(|[before, _]| before)
     }
 
     /// Returns the selection after the step that redo would redo.
-    #[must_use]
     pub fn selected_after(&self) -> Option<&Selected> {
         self.steps.get(self.position)?.selected.as_ref().map(|[_, after]| after)
     }
@@ -208,13 +205,11 @@ impl History {
     }
 
     /// Returns the number of steps done.
-    #[must_use]
     pub const fn position(&self) -> usize {
         self.position
     }
 
     /// Returns whether the scene is unchanged since it was last saved or loaded.
-    #[must_use]
     pub fn is_saved(&self) -> bool {
         self.saved == Some(self.position)
     }

@@ -5,12 +5,12 @@ use std::collections::BTreeSet;
 use glam::{DMat4, DVec3};
 
 use super::names::Names;
-use super::{Refusal, set_transform};
+use super::{Change, Refusal, set_transform};
 use crate::base::Shared;
 use crate::scene::{
-    AnchorMut, Camera, CameraId, Command, CommandError, Crease, Item, ItemId, Lens, Light, LightId,
-    LightKind, MaterialChoice, Model, Object, ObjectId, Pose, Scene, Shape, Smoothing, SpotOwner,
-    Tracked,
+    AnchorMut, Camera, CameraId, CameraMode, Command, CommandError, Crease, Item, ItemId, Lens,
+    Light, LightId, LightKind, MaterialChoice, Model, Object, ObjectId, Pose, Scene, Shape,
+    Smoothing, SpotOwner, Tracked,
 };
 
 /// The largest number of parts to split at once, which keeps the outline readable.
@@ -42,22 +42,14 @@ pub fn insert_objects(scene: &Scene, objects: Vec<Object>) -> Command {
 #[must_use]
 pub fn insert_camera(scene: &Scene, model: Shared<Model>, material: MaterialChoice) -> Command {
     let number = scene.cameras.len() + 1;
-    let camera = Camera {
-        name: format!("camera {number}"),
-        visible: true,
-        model,
-        material,
-        pose: Tracked::new(Pose::facing_minus_z(DVec3::ZERO)),
-        lens: Lens::default(),
-    };
-    put_camera(scene, camera)
+    put_camera(scene, Camera::new(&format!("camera {number}"), model, material, DVec3::ZERO))
 }
 
 /// Adds a white light in the lowest free slot.
 ///
 /// # Errors
 /// If it is a spot, and the owner is not in the scene.
-pub fn insert_light(scene: &Scene, kind: LightKind) -> Result<Command, Refusal> {
+pub fn insert_light(scene: &Scene, kind: LightKind) -> Change {
     put_light(scene, Light::new(&light_name(&kind), 0, kind))
 }
 
@@ -65,7 +57,7 @@ pub fn insert_light(scene: &Scene, kind: LightKind) -> Result<Command, Refusal> 
 ///
 /// # Errors
 /// If the item is gone.
-pub fn duplicate(scene: &Scene, id: ItemId, by: DVec3) -> Result<Command, Refusal> {
+pub fn duplicate(scene: &Scene, id: ItemId, by: DVec3) -> Change {
     match id {
         ItemId::Object(id) => {
             let mut object = scene.objects.get(id).ok_or(Refusal::Gone)?.clone();
@@ -94,7 +86,7 @@ pub fn duplicate(scene: &Scene, id: ItemId, by: DVec3) -> Result<Command, Refusa
 ///
 /// # Errors
 /// If the item is gone or locked, or is the last camera.
-pub fn remove(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
+pub fn remove(scene: &Scene, id: ItemId) -> Change {
     if !scene.contains(id) {
         return Err(Refusal::Gone);
     }
@@ -121,7 +113,7 @@ pub fn remove(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
 ///
 /// # Errors
 /// If the name is empty, or the item is gone.
-pub fn rename(scene: &Scene, id: ItemId, name: &str) -> Result<Command, Refusal> {
+pub fn rename(scene: &Scene, id: ItemId, name: &str) -> Change {
     let name = name.trim();
     if name.is_empty() {
         return Err(Refusal::NoName);
@@ -138,7 +130,7 @@ pub fn rename(scene: &Scene, id: ItemId, name: &str) -> Result<Command, Refusal>
 ///
 /// # Errors
 /// If the item is gone.
-pub fn reorder(scene: &Scene, id: ItemId, to: usize) -> Result<Command, Refusal> {
+pub fn reorder(scene: &Scene, id: ItemId, to: usize) -> Change {
     if scene.contains(id) { Ok(Command::Reorder { id, to }) } else { Err(Refusal::Gone) }
 }
 
@@ -146,7 +138,7 @@ pub fn reorder(scene: &Scene, id: ItemId, to: usize) -> Result<Command, Refusal>
 ///
 /// # Errors
 /// If the item is gone.
-pub fn toggle_shown(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
+pub fn toggle_shown(scene: &Scene, id: ItemId) -> Change {
     match id {
         ItemId::Object(id) => change_object(scene, id, |object| object.visible = !object.visible),
         ItemId::Camera(id) => change_camera(scene, id, |camera| camera.visible = !camera.visible),
@@ -158,7 +150,7 @@ pub fn toggle_shown(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
 ///
 /// # Errors
 /// If the item is gone.
-pub fn toggle_locked(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
+pub fn toggle_locked(scene: &Scene, id: ItemId) -> Change {
     let locked = !scene.locked.contains(&id);
     if scene.contains(id) { Ok(Command::Lock { id, locked }) } else { Err(Refusal::Gone) }
 }
@@ -167,7 +159,7 @@ pub fn toggle_locked(scene: &Scene, id: ItemId) -> Result<Command, Refusal> {
 ///
 /// # Errors
 /// If the object is gone, or does not have this part.
-pub fn toggle_part(scene: &Scene, id: ObjectId, part: u32) -> Result<Command, Refusal> {
+pub fn toggle_part(scene: &Scene, id: ObjectId, part: u32) -> Change {
     let object = scene.objects.get(id).ok_or(Refusal::Gone)?;
     if part as usize >= object.model.mesh.parts().len() {
         return Err(Refusal::Gone);
@@ -184,7 +176,7 @@ pub fn toggle_part(scene: &Scene, id: ObjectId, part: u32) -> Result<Command, Re
 ///
 /// # Errors
 /// If the object is gone, or has only one part or too many parts.
-pub fn split(scene: &Scene, id: ObjectId) -> Result<Command, Refusal> {
+pub fn split(scene: &Scene, id: ObjectId) -> Change {
     let object = scene.objects.get(id).ok_or(Refusal::Gone)?;
     let at = scene.objects.position(id).ok_or(Refusal::Gone)?;
     let mesh = &object.model.mesh;
@@ -230,7 +222,7 @@ fn part_names(scene: &Scene, object: &Object, parts: &BTreeSet<u32>) -> Vec<Stri
 ///
 /// # Errors
 /// If the lens is invalid, or the camera is gone.
-pub fn set_lens(scene: &Scene, id: CameraId, lens: Lens) -> Result<Command, Refusal> {
+pub fn set_lens(scene: &Scene, id: CameraId, lens: Lens) -> Change {
     if !lens.is_valid() {
         return Err(CommandError::Lens.into());
     }
@@ -238,7 +230,6 @@ pub fn set_lens(scene: &Scene, id: CameraId, lens: Lens) -> Result<Command, Refu
 }
 
 /// Returns the reason why a crease angle has no effect on a model; `None` if it has.
-#[must_use]
 pub fn why_no_crease(model: &Model, file_normals: bool) -> Option<&'static str> {
     if Shape::named(&model.name).is_some_and(|shape| shape.model().shares_file_with(model)) {
         Some("the shape has exact normals")
@@ -258,7 +249,7 @@ pub fn why_no_crease(model: &Model, file_normals: bool) -> Option<&'static str> 
 ///
 /// # Errors
 /// If the object is gone, or the angle has no effect on it.
-pub fn set_crease(scene: &Scene, id: ObjectId, crease: Crease) -> Result<Command, Refusal> {
+pub fn set_crease(scene: &Scene, id: ObjectId, crease: Crease) -> Change {
     let object = scene.objects.get(id).ok_or(Refusal::Gone)?;
     if let Some(reason) = why_no_crease(&object.model, object.file_normals) {
         return Err(Refusal::NoCrease(reason));
@@ -276,11 +267,7 @@ pub fn set_crease(scene: &Scene, id: ObjectId, crease: Crease) -> Result<Command
 ///
 /// # Errors
 /// If the object is gone.
-pub fn change_object(
-    scene: &Scene,
-    id: ObjectId,
-    change: impl FnOnce(&mut Object),
-) -> Result<Command, Refusal> {
+pub fn change_object(scene: &Scene, id: ObjectId, change: impl FnOnce(&mut Object)) -> Change {
     let mut object = scene.objects.get(id).ok_or(Refusal::Gone)?.clone();
     change(&mut object);
     Ok(Command::Replace(Item::Object(id, Box::new(object))))
@@ -289,37 +276,32 @@ pub fn change_object(
 /// Changes properties of all objects in one step, except their placements and spins.
 #[must_use]
 pub fn change_all_objects(scene: &Scene, change: impl Fn(&mut Object)) -> Command {
-    let changed = |(id, object): (ObjectId, &Object)| {
-        let mut object = object.clone();
-        change(&mut object);
-        Command::Replace(Item::Object(id, Box::new(object)))
-    };
-    Command::Batch(scene.objects.iter().map(changed).collect())
+    let changed = |id| change_object(scene, id, &change).ok();
+    Command::Batch(scene.objects.ids().filter_map(changed).collect())
 }
 
 /// Changes properties of a camera, except its pose.
 ///
 /// # Errors
 /// If the camera is gone.
-pub fn change_camera(
-    scene: &Scene,
-    id: CameraId,
-    change: impl FnOnce(&mut Camera),
-) -> Result<Command, Refusal> {
+pub fn change_camera(scene: &Scene, id: CameraId, change: impl FnOnce(&mut Camera)) -> Change {
     let mut camera = scene.cameras.get(id).ok_or(Refusal::Gone)?.clone();
     change(&mut camera);
     Ok(Command::Replace(Item::Camera(id, Box::new(camera))))
+}
+
+/// Sets whether a camera flies or orbits an object, without turning it.
+pub(super) fn set_mode(scene: &Scene, id: CameraId, mode: CameraMode) -> Change {
+    change_camera(scene, id, |camera| {
+        camera.pose = camera.pose.replaced(Pose { mode, ..*camera.pose.now() });
+    })
 }
 
 /// Changes properties of a light, except its position and direction.
 ///
 /// # Errors
 /// If the light is gone.
-pub fn change_light(
-    scene: &Scene,
-    id: LightId,
-    change: impl FnOnce(&mut Light),
-) -> Result<Command, Refusal> {
+pub fn change_light(scene: &Scene, id: LightId, change: impl FnOnce(&mut Light)) -> Change {
     try_change_light(scene, id, |light| {
         change(light);
         Ok(())
@@ -331,7 +313,7 @@ pub(super) fn try_change_light(
     scene: &Scene,
     id: LightId,
     change: impl FnOnce(&mut Light) -> Result<(), Refusal>,
-) -> Result<Command, Refusal> {
+) -> Change {
     let mut light = scene.lights.get(id).ok_or(Refusal::Gone)?.clone();
     change(&mut light)?;
     Ok(Command::Replace(Item::Light(id, Box::new(light))))
@@ -346,7 +328,7 @@ pub(super) fn put_camera(scene: &Scene, mut camera: Camera) -> Command {
 }
 
 /// Adds a light at the end of the list, in the lowest free slot.
-pub(super) fn put_light(scene: &Scene, mut light: Light) -> Result<Command, Refusal> {
+pub(super) fn put_light(scene: &Scene, mut light: Light) -> Change {
     if let Some(owner) = light.kind.owner() {
         check_owner(scene, owner)?;
     }
@@ -361,7 +343,8 @@ fn inserted(scene: &Scene, at: usize, item: Item) -> Command {
     Command::Batch(vec![Command::NextId(scene.next_id + 1), Command::Insert { at, item }])
 }
 
-fn one_or_batch(mut commands: Vec<Command>) -> Command {
+/// Returns a single command itself, and a batch of several.
+pub(super) fn one_or_batch(mut commands: Vec<Command>) -> Command {
     if commands.len() == 1 { commands.remove(0) } else { Command::Batch(commands) }
 }
 

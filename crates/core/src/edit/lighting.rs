@@ -16,7 +16,7 @@
 use glam::DVec3;
 
 use super::items::change_light;
-use super::{Refusal, framing};
+use super::{Change, Refusal, framing};
 use crate::base::color::Color;
 use crate::scene::{
     Anchor, AnchorMut, Attenuation, Command, HALF_APERTURE, Light, LightOrigin, Object, ObjectId,
@@ -46,7 +46,7 @@ const MOST_SUBSETS: usize = 8;
 ///
 /// # Errors
 /// If there is nothing to light.
-pub fn models(scene: &Scene, view: &View) -> Result<Command, Refusal> {
+pub fn models(scene: &Scene, view: &View) -> Change {
     let ids: Vec<ObjectId> = scene.objects.ids().collect();
     let sphere = framing::sphere(scene, view, &ids).ok_or(Refusal::NothingToFrame)?;
     let (centre, radius) = (sphere.centre, if sphere.radius > 0.0 { sphere.radius } else { 1.0 });

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use glam::DVec3;
 
 use super::items::{change_light, check_owner, try_change_light};
-use super::{Refusal, set_transform};
+use super::{Change, Refusal, set_transform};
 use crate::scene::{
     Aim, AnchorMut, Attenuation, Command, CommandError, HALF_APERTURE, ItemId, LightId, LightKind,
     LightNumber, Orbit, Scene, SpotOwner, Subject, Tracked, View,
@@ -36,25 +36,21 @@ impl Channel {
 }
 
 /// Returns the kind of a sun that shines straight down.
-#[must_use]
 pub const fn sun() -> LightKind {
     LightKind::Sun { direction: Tracked::new(DVec3::NEG_Y) }
 }
 
 /// Returns the kind of a bulb at the origin.
-#[must_use]
 pub fn bulb() -> LightKind {
     LightKind::Bulb { position: Tracked::new(DVec3::ZERO), orbit: Orbit::default() }
 }
 
 /// Returns the kind of a spot with default aperture and concentration.
-#[must_use]
 pub const fn spot(owner: SpotOwner) -> LightKind {
     LightKind::Spot { owner, half_aperture: 22.5, exponent: 5.0 }
 }
 
 /// Returns the owner of a free spot at the origin that shines along -Z.
-#[must_use]
 pub const fn fixed() -> SpotOwner {
     SpotOwner::Fixed(Tracked::new(Aim { position: DVec3::ZERO, direction: DVec3::NEG_Z }))
 }
@@ -63,7 +59,7 @@ pub const fn fixed() -> SpotOwner {
 ///
 /// # Errors
 /// If the slot is empty.
-pub fn toggle_slot(scene: &Scene, slot: u32) -> Result<Command, Refusal> {
+pub fn toggle_slot(scene: &Scene, slot: u32) -> Change {
     let in_slot = scene.lights.iter().find(|(_, light)| light.slot == slot);
     let (id, _) = in_slot.ok_or(Refusal::EmptySlot(slot))?;
     change_light(scene, id, |light| light.on = !light.on)
@@ -74,7 +70,7 @@ pub fn toggle_slot(scene: &Scene, slot: u32) -> Result<Command, Refusal> {
 ///
 /// # Errors
 /// If no light is selected, or it is the only light.
-pub fn solo(scene: &Scene, view: &View, before: &BTreeSet<LightId>) -> Result<Command, Refusal> {
+pub fn solo(scene: &Scene, view: &View, before: &BTreeSet<LightId>) -> Change {
     let (own, _) = set_transform::selected_light(scene, view)?;
     if scene.lights.len() < 2 {
         return Err(Refusal::OnlyOne);
@@ -91,13 +87,11 @@ pub fn solo(scene: &Scene, view: &View, before: &BTreeSet<LightId>) -> Result<Co
 }
 
 /// Returns whether a light is on and all others are off.
-#[must_use]
 pub fn is_solo(scene: &Scene, id: LightId) -> bool {
     scene.lights.len() > 1 && scene.lights.iter().all(|(other, light)| light.on == (other == id))
 }
 
 /// Returns the lights that are on.
-#[must_use]
 pub fn lit(scene: &Scene) -> BTreeSet<LightId> {
     scene.lights.iter().filter(|(_, light)| light.on).map(|(id, _)| id).collect()
 }
@@ -106,12 +100,7 @@ pub fn lit(scene: &Scene) -> BTreeSet<LightId> {
 ///
 /// # Errors
 /// At the end of the range, or if the subject is not lights.
-pub fn step_color(
-    scene: &Scene,
-    view: &View,
-    channel: Channel,
-    by: i16,
-) -> Result<Command, Refusal> {
+pub fn step_color(scene: &Scene, view: &View, channel: Channel, by: i16) -> Change {
     let (id, light) = subject_light(scene, view)?;
     let index = channel as usize;
     let old = light.color.0[index];
@@ -127,7 +116,7 @@ pub fn step_color(
 ///
 /// # Errors
 /// At the end of the range, for other lights, or if the subject is not lights.
-pub fn step_aperture(scene: &Scene, view: &View, degrees: f64) -> Result<Command, Refusal> {
+pub fn step_aperture(scene: &Scene, view: &View, degrees: f64) -> Change {
     let (id, light) = subject_light(scene, view)?;
     let old = (HALF_APERTURE.get)(&light.kind).ok_or(Refusal::NotASpot)?;
     let new = (old + degrees).clamp(0.0, HALF_APERTURE.largest);
@@ -142,12 +131,7 @@ pub fn step_aperture(scene: &Scene, view: &View, degrees: f64) -> Result<Command
 ///
 /// # Errors
 /// If the light has no such number, or the number is not finite.
-pub fn set_number(
-    scene: &Scene,
-    id: LightId,
-    number: &LightNumber,
-    to: f64,
-) -> Result<Command, Refusal> {
+pub fn set_number(scene: &Scene, id: LightId, number: &LightNumber, to: f64) -> Change {
     if !to.is_finite() {
         return Err(Refusal::TooLarge);
     }
@@ -162,7 +146,7 @@ pub fn set_number(
 ///
 /// # Errors
 /// If the light is not a spot, or the owner is not in the scene.
-pub fn set_owner(scene: &Scene, id: LightId, to: SpotOwner) -> Result<Command, Refusal> {
+pub fn set_owner(scene: &Scene, id: LightId, to: SpotOwner) -> Change {
     check_owner(scene, &to)?;
     set_transform::unlocked(scene, ItemId::Light(id))?;
     try_change_light(scene, id, |light| match light.kind.anchor_mut() {
@@ -180,7 +164,7 @@ pub fn set_owner(scene: &Scene, id: LightId, to: SpotOwner) -> Result<Command, R
 ///
 /// # Errors
 /// If another light has this key.
-pub fn set_slot(scene: &Scene, id: LightId, slot: u32) -> Result<Command, Refusal> {
+pub fn set_slot(scene: &Scene, id: LightId, slot: u32) -> Change {
     if scene.lights.iter().any(|(other, light)| other != id && light.slot == slot) {
         return Err(Refusal::SlotTaken(slot));
     }
@@ -191,7 +175,7 @@ pub fn set_slot(scene: &Scene, id: LightId, slot: u32) -> Result<Command, Refusa
 ///
 /// # Errors
 /// If the light would become infinite or negative.
-pub fn set_attenuation(scene: &Scene, id: LightId, to: Attenuation) -> Result<Command, Refusal> {
+pub fn set_attenuation(scene: &Scene, id: LightId, to: Attenuation) -> Change {
     if !to.is_valid() {
         return Err(CommandError::Attenuation.into());
     }
@@ -202,7 +186,7 @@ pub fn set_attenuation(scene: &Scene, id: LightId, to: Attenuation) -> Result<Co
 ///
 /// # Errors
 /// If the light is ambient, or gone.
-pub fn toggle_shadows(scene: &Scene, id: LightId) -> Result<Command, Refusal> {
+pub fn toggle_shadows(scene: &Scene, id: LightId) -> Change {
     let light = scene.lights.get(id).ok_or(Refusal::Gone)?;
     if !light.can_cast_shadows() {
         return Err(Refusal::NoShadows);
@@ -214,7 +198,7 @@ pub fn toggle_shadows(scene: &Scene, id: LightId) -> Result<Command, Refusal> {
 ///
 /// # Errors
 /// If no light is selected, or it is ambient.
-pub fn toggle_selected_shadows(scene: &Scene, view: &View) -> Result<Command, Refusal> {
+pub fn toggle_selected_shadows(scene: &Scene, view: &View) -> Change {
     let (id, _) = set_transform::selected_light(scene, view)?;
     toggle_shadows(scene, id)
 }
@@ -223,7 +207,7 @@ pub fn toggle_selected_shadows(scene: &Scene, view: &View) -> Result<Command, Re
 ///
 /// # Errors
 /// If no light can cast shadows.
-pub fn toggle_all_shadows(scene: &Scene) -> Result<Command, Refusal> {
+pub fn toggle_all_shadows(scene: &Scene) -> Change {
     let to = !casts_shadows(scene);
     let able = scene.lights.iter().filter(|(_, light)| light.can_cast_shadows());
     let changed: Vec<Command> = able
@@ -234,7 +218,6 @@ pub fn toggle_all_shadows(scene: &Scene) -> Result<Command, Refusal> {
 }
 
 /// Returns whether any light of a scene casts shadows.
-#[must_use]
 pub fn casts_shadows(scene: &Scene) -> bool {
     scene.lights.iter().any(|(_, light)| light.can_cast_shadows() && light.shadows)
 }

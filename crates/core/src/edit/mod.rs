@@ -32,5 +32,5 @@ pub mod turntable;
 
 pub use gesture::{Gesture, GesturePhase};
 pub use history::History;
-pub use refusal::Refusal;
+pub use refusal::{Change, Refusal};
 pub use selected::Selected;

@@ -4,15 +4,15 @@
 //! restarts from there. Thus nothing jumps on the screen.
 
 use super::items::{change_object, try_change_light};
-use super::{GesturePhase, Refusal};
+use super::{Change, GesturePhase, Refusal};
 use crate::base::math::Axis;
-use crate::scene::{AnchorMut, Command, LightId, ObjectId, Orbit, Scene, Spin};
+use crate::scene::{AnchorMut, LightId, ObjectId, Orbit, Scene, Spin};
 
 /// Starts or stops the spin of an object about one of its axes.
 ///
 /// # Errors
 /// If the object is gone.
-pub fn toggle_spin(scene: &Scene, id: ObjectId, axis: Axis, time: f64) -> Result<Command, Refusal> {
+pub fn toggle_spin(scene: &Scene, id: ObjectId, axis: Axis, time: f64) -> Change {
     let mut spin = scene.objects.get(id).ok_or(Refusal::Gone)?.spin;
     spin.axes[axis.index()] = !spin.axes[axis.index()];
     set_spin(scene, id, spin, time, GesturePhase::First)
@@ -22,13 +22,7 @@ pub fn toggle_spin(scene: &Scene, id: ObjectId, axis: Axis, time: f64) -> Result
 ///
 /// # Errors
 /// If the speed is not finite, or the object is gone.
-pub fn set_spin(
-    scene: &Scene,
-    id: ObjectId,
-    spin: Spin,
-    time: f64,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub fn set_spin(scene: &Scene, id: ObjectId, spin: Spin, time: f64, phase: GesturePhase) -> Change {
     let object = scene.objects.get(id).ok_or(Refusal::Gone)?;
     if !(spin.speed.is_finite() && time.is_finite()) {
         return Err(Refusal::TooLarge);
@@ -49,7 +43,7 @@ pub fn set_spin(
 ///
 /// # Errors
 /// If the object does not spin, or is gone.
-pub fn apply_spin(scene: &Scene, id: ObjectId, time: f64) -> Result<Command, Refusal> {
+pub fn apply_spin(scene: &Scene, id: ObjectId, time: f64) -> Change {
     let object = scene.objects.get(id).ok_or(Refusal::Gone)?;
     if !object.spin.is_on() {
         return Err(Refusal::NotSpinning);
@@ -61,7 +55,7 @@ pub fn apply_spin(scene: &Scene, id: ObjectId, time: f64) -> Result<Command, Ref
 ///
 /// # Errors
 /// If the light is not a bulb, or is gone.
-pub fn toggle_orbit(scene: &Scene, id: LightId, time: f64) -> Result<Command, Refusal> {
+pub fn toggle_orbit(scene: &Scene, id: LightId, time: f64) -> Change {
     let light = scene.lights.get(id).ok_or(Refusal::Gone)?;
     let orbit = light.kind.orbit().ok_or(Refusal::NotABulb)?;
     set_orbit(scene, id, Orbit { on: !orbit.on, ..*orbit }, time, GesturePhase::First)
@@ -71,13 +65,7 @@ pub fn toggle_orbit(scene: &Scene, id: LightId, time: f64) -> Result<Command, Re
 ///
 /// # Errors
 /// If the speed is not finite, or the light is not a bulb or is gone.
-pub fn set_orbit(
-    scene: &Scene,
-    id: LightId,
-    to: Orbit,
-    time: f64,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub fn set_orbit(scene: &Scene, id: LightId, to: Orbit, time: f64, phase: GesturePhase) -> Change {
     if !(to.speed.is_finite() && time.is_finite()) {
         return Err(Refusal::TooLarge);
     }

@@ -6,9 +6,9 @@
 use glam::{DVec2, DVec3};
 
 use super::transform::{effective_pose, moved, moved_about, orbited};
-use super::{GesturePhase, Refusal, set_transform};
+use super::{Change, GesturePhase, Refusal, set_transform};
 use crate::base::image::Size;
-use crate::scene::{CameraMode, Command, Lens, Observer, Pose, Projection, Scene, View};
+use crate::scene::{CameraMode, Lens, Observer, Pose, Projection, Scene, View};
 
 /// The factor that each notch of the wheel applies to the distance.
 pub const NOTCH: f64 = 0.9;
@@ -27,13 +27,7 @@ pub struct Pointer {
 ///
 /// # Errors
 /// If the observer is an object.
-pub fn look(
-    scene: &Scene,
-    view: &View,
-    yaw: f64,
-    pitch: f64,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub fn look(scene: &Scene, view: &View, yaw: f64, pitch: f64, phase: GesturePhase) -> Change {
     let pose = looking_pose(scene, view)?;
     if pose.mode != CameraMode::Fly {
         return orbit(scene, view, yaw, pitch, phase);
@@ -47,13 +41,7 @@ pub fn look(
 ///
 /// # Errors
 /// If the observer is an object.
-pub fn orbit(
-    scene: &Scene,
-    view: &View,
-    yaw: f64,
-    pitch: f64,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub fn orbit(scene: &Scene, view: &View, yaw: f64, pitch: f64, phase: GesturePhase) -> Change {
     let pose = looking_pose(scene, view)?;
     let turn = set_transform::turn(DVec3::Y, yaw)? * set_transform::turn(pose.axes.x_axis, pitch)?;
     let pose = match set_transform::analysis_centre(scene, view) {
@@ -73,13 +61,7 @@ pub fn orbit(
 ///
 /// # Errors
 /// If the observer is an object.
-pub fn pan(
-    scene: &Scene,
-    view: &View,
-    pixels: DVec2,
-    size: Size,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub fn pan(scene: &Scene, view: &View, pixels: DVec2, size: Size, phase: GesturePhase) -> Change {
     let pose = looking_pose(scene, view)?;
     let units = pixels * units_per_pixel(scene, view, size, depth(scene, view, &pose));
     let pose = moved(&pose, DVec3::new(-units.x, units.y, 0.0));
@@ -91,12 +73,7 @@ pub fn pan(
 ///
 /// # Errors
 /// If the observer is an object.
-pub fn fly(
-    scene: &Scene,
-    view: &View,
-    delta: DVec3,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub fn fly(scene: &Scene, view: &View, delta: DVec3, phase: GesturePhase) -> Change {
     let pose = moved(&looking_pose(scene, view)?, delta);
     set_transform::pose(scene, view.camera, Pose { mode: CameraMode::Fly, ..pose }, phase)
 }
@@ -116,7 +93,7 @@ pub fn zoom(
     pointer: Pointer,
     size: Size,
     phase: GesturePhase,
-) -> Result<Command, Refusal> {
+) -> Change {
     let pose = looking_pose(scene, view)?;
     // The factor of the distance. Clamping the notches keeps it within the range of f64.
     let left = libm::pow(NOTCH, notches.clamp(-200.0, 200.0));
@@ -155,7 +132,6 @@ pub fn zoom(
 }
 
 /// Returns the world units per pixel at `depth` in front of the camera.
-#[must_use]
 pub fn units_per_pixel(scene: &Scene, view: &View, size: Size, depth: f64) -> f64 {
     let lens = scene.selected_camera(view).lens;
     match view.projection {

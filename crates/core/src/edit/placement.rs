@@ -10,21 +10,18 @@
 use glam::{DMat3, DMat4, DVec3};
 
 use super::angles;
-use super::set_transform::{self, LightPlace};
 use super::transform::effective_pose;
-use super::{GesturePhase, Refusal};
+use super::{Change, GesturePhase, Refusal, set_transform};
 use crate::base::math::{self, Axis};
-use crate::scene::{Aim, CameraId, CameraMode, Command, LightId, ObjectId, Pose, Scene, View};
+use crate::scene::{CameraId, CameraMode, LightId, LightOrigin, ObjectId, Pose, Scene, View};
 
 /// Returns the position of an object's origin.
-#[must_use]
 pub fn translation(placement: &DMat4) -> DVec3 {
     placement.w_axis.truncate()
 }
 
 /// Returns an object's rotation as degrees about X, Y and Z, `R = Rx Ry Rz`. Of the equivalent
 /// angles, these have the smallest X and Z.
-#[must_use]
 pub fn turn_degrees(placement: &DMat4) -> DVec3 {
     let turn = turn(placement);
     let [x, y, z] = [turn.x_axis, turn.y_axis, turn.z_axis];
@@ -42,7 +39,6 @@ pub fn turn_degrees(placement: &DMat4) -> DVec3 {
 }
 
 /// Returns the scale of an object along its axes; X is negative if the object is mirrored.
-#[must_use]
 pub fn scale(placement: &DMat4) -> DVec3 {
     let m = DMat3::from_mat4(*placement);
     let x = m.x_axis.length() * if m.determinant() < 0.0 { -1.0 } else { 1.0 };
@@ -50,7 +46,6 @@ pub fn scale(placement: &DMat4) -> DVec3 {
 }
 
 /// Returns a camera's yaw, pitch and roll in degrees, `R = Ry Rx Rz`.
-#[must_use]
 pub fn camera_degrees(pose: &Pose) -> DVec3 {
     let [x, y, z] = [pose.axes.x_axis, pose.axes.y_axis, pose.axes.z_axis];
     // R = |  ...     ...   sy cp |
@@ -75,7 +70,7 @@ pub fn object_translation(
     id: ObjectId,
     to: DVec3,
     phase: GesturePhase,
-) -> Result<Command, Refusal> {
+) -> Change {
     let m = placement(scene, id)?;
     set_transform::object(scene, view, id, DMat4 { w_axis: to.extend(1.0), ..m }, phase)
 }
@@ -90,7 +85,7 @@ pub fn object_turn(
     id: ObjectId,
     degrees: DVec3,
     phase: GesturePhase,
-) -> Result<Command, Refusal> {
+) -> Change {
     let m = placement(scene, id)?;
     let [x, y, z] = turns(degrees)?;
     let linear = x * y * z * turn(&m).transpose() * DMat3::from_mat4(m);
@@ -107,7 +102,7 @@ pub fn object_scale(
     id: ObjectId,
     to: DVec3,
     phase: GesturePhase,
-) -> Result<Command, Refusal> {
+) -> Change {
     let m = placement(scene, id)?;
     let (old, turn) = (scale(&m), turn(&m));
     let linear = DMat3::from_mat4(m);
@@ -131,13 +126,7 @@ pub fn object_scale(
 ///
 /// # Errors
 /// If the placement is flat or not finite, or the object is gone.
-pub fn object(
-    scene: &Scene,
-    view: &View,
-    id: ObjectId,
-    to: DMat4,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub fn object(scene: &Scene, view: &View, id: ObjectId, to: DMat4, phase: GesturePhase) -> Change {
     if to.is_finite() && !math::has_full_rank(DMat3::from_mat4(to)) {
         return Err(Refusal::Flat);
     }
@@ -146,7 +135,6 @@ pub fn object(
 
 /// Copies the numbers that changed from `old` to `new` into the placement `own`: of the position,
 /// and of the scale or else the rotation. `None` if the object would become flat.
-#[must_use]
 pub(super) fn alike(old: &DMat4, new: &DMat4, own: &DMat4) -> Option<DMat4> {
     // Numbers that did not change, up to rounding, keep the object's value.
     let chosen = |old: DVec3, new: DVec3, own: DVec3| {
@@ -181,7 +169,7 @@ pub fn camera_eye(
     id: CameraId,
     to: DVec3,
     phase: GesturePhase,
-) -> Result<Command, Refusal> {
+) -> Change {
     let view = &View { camera: id, ..view.clone() };
     let pose = effective_pose(scene, view);
     let axes = match set_transform::analysis_centre(scene, view) {
@@ -202,7 +190,7 @@ pub fn camera_turn(
     id: CameraId,
     degrees: DVec3,
     phase: GesturePhase,
-) -> Result<Command, Refusal> {
+) -> Change {
     let view = &View { camera: id, ..view.clone() };
     let [pitch, yaw, roll] = turns(DVec3::new(degrees.y, degrees.x, degrees.z))?;
     let axes = yaw * pitch * roll;
@@ -218,13 +206,7 @@ pub fn camera_turn(
 ///
 /// # Errors
 /// If the numbers are not finite, or the camera is gone.
-pub fn camera(
-    scene: &Scene,
-    id: CameraId,
-    eye: DVec3,
-    axes: DMat3,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub fn camera(scene: &Scene, id: CameraId, eye: DVec3, axes: DMat3, phase: GesturePhase) -> Change {
     set_transform::pose(scene, id, Pose { eye, axes, mode: CameraMode::Fly }, phase)
 }
 
@@ -232,17 +214,9 @@ pub fn camera(
 ///
 /// # Errors
 /// If the light's position cannot be set, or the numbers are not finite.
-pub fn light_position(
-    scene: &Scene,
-    id: LightId,
-    to: DVec3,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub fn light_position(scene: &Scene, id: LightId, to: DVec3, phase: GesturePhase) -> Change {
     let light = scene.lights.get(id).ok_or(Refusal::Gone)?;
-    let place = match set_transform::place_of(light)? {
-        LightPlace::Aim(aim) => LightPlace::Aim(Aim { position: to, ..aim }),
-        LightPlace::Direction(_) | LightPlace::Position(_) => LightPlace::Position(to),
-    };
+    let place = LightOrigin { position: Some(to), ..set_transform::place_of(light)? };
     set_transform::light(scene, id, place, phase)
 }
 
@@ -250,20 +224,12 @@ pub fn light_position(
 ///
 /// # Errors
 /// If the light's direction cannot be set, or `to` has length 0.
-pub fn light_direction(
-    scene: &Scene,
-    id: LightId,
-    to: DVec3,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub fn light_direction(scene: &Scene, id: LightId, to: DVec3, phase: GesturePhase) -> Change {
     let light = scene.lights.get(id).ok_or(Refusal::Gone)?;
     if to == DVec3::ZERO {
         return Err(Refusal::NoDirection);
     }
-    let place = match set_transform::place_of(light)? {
-        LightPlace::Aim(aim) => LightPlace::Aim(Aim { direction: to, ..aim }),
-        LightPlace::Direction(_) | LightPlace::Position(_) => LightPlace::Direction(to),
-    };
+    let place = LightOrigin { direction: Some(to), ..set_transform::place_of(light)? };
     set_transform::light(scene, id, place, phase)
 }
 

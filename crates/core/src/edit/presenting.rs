@@ -4,11 +4,9 @@
 //! the untouched first scene, and in `render`. In the window the model is selected, and the camera
 //! orbits it.
 
-use super::items::insert_objects;
+use super::items::{insert_objects, set_mode};
 use super::{Refusal, framing, lighting, selection};
-use crate::scene::{
-    CameraMode, Command, Item, ItemId, Object, ObjectId, Observer, Pose, Scene, Subject, View,
-};
+use crate::scene::{CameraMode, Command, ItemId, Object, Observer, Scene, Subject, View};
 
 /// Replaces all objects by these, frames and lights them, and sets a neutral background. Returns
 /// the change, and the view of the changed scene, with steps by size. The first object is selected,
@@ -37,20 +35,13 @@ pub fn alone(scene: &Scene, view: &View, objects: Vec<Object>) -> Result<(Comman
         Err(Refusal::NothingToFrame) => {}
         Err(refusal) => return Err(refusal),
     }
-    if let Some(id) = scratch.view.object {
-        scratch.change(analysis(&scratch.scene, &scratch.view, id)?)?;
+    // The camera orbits the object from its current pose. Aiming it would move the object out of
+    // the middle of the picture, since the mean of its vertices is not the centre of its sphere.
+    if let Some(target) = scratch.view.object {
+        let mode = CameraMode::Analysis { target };
+        scratch.change(set_mode(&scratch.scene, scratch.view.camera, mode)?)?;
     }
     Ok((Command::Batch(scratch.commands), scratch.view))
-}
-
-/// Lets the camera orbit an object from its current pose. Aiming the camera would move the object
-/// out of the middle of the picture, since the mean of its vertices is not the centre of its
-/// sphere.
-fn analysis(scene: &Scene, view: &View, id: ObjectId) -> Result<Command, Refusal> {
-    let mut camera = scene.cameras.get(view.camera).ok_or(Refusal::Gone)?.clone();
-    let mode = CameraMode::Analysis { target: id };
-    camera.pose = camera.pose.replaced(Pose { mode, ..*camera.pose.now() });
-    Ok(Command::Replace(Item::Camera(view.camera, Box::new(camera))))
 }
 
 /// A copy of the scene, with the commands applied to it.

@@ -19,7 +19,6 @@ pub struct Selected {
 
 impl Selected {
     /// Records the selection of a view, with the other selected items.
-    #[must_use]
     pub fn of(view: &View, others: &Others) -> Self {
         let View { subject, object, camera, light, .. } = *view;
         Self { subject, object, camera, light, others: others.clone() }

@@ -6,11 +6,11 @@
 
 use std::hash::Hash;
 
-use super::set_transform;
-use super::{GesturePhase, Refusal};
+use super::items::{one_or_batch, set_mode};
+use super::{GesturePhase, Refusal, set_transform};
 use crate::scene::{
-    Camera, CameraId, CameraMode, Command, Item, ItemId, List, ObjectId, Observer, PolygonMode,
-    Pose, Scene, Subject, Transformation, View,
+    CameraMode, Command, Item, ItemId, List, ObjectId, Observer, PolygonMode, Scene, Subject,
+    Transformation, View,
 };
 
 /// A view after a selection, with the command that belongs to it.
@@ -66,11 +66,7 @@ fn select_in(
         }
     }
     keep_polygons(scene, &mut next);
-    let command = match commands.len() {
-        0 => None,
-        1 => commands.pop(),
-        _ => Some(Command::Batch(commands)),
-    };
+    let command = (!commands.is_empty()).then(|| one_or_batch(commands));
     Ok(Selection { view: next, command })
 }
 
@@ -82,13 +78,7 @@ fn left_in_fly(scene: &Scene, id: ObjectId) -> Vec<Command> {
         .cameras
         .iter()
         .filter(|(_, camera)| camera.pose.now().mode == CameraMode::Analysis { target: id });
-    let fly = |(camera_id, camera): (CameraId, &Camera)| {
-        let mut camera = camera.clone();
-        let pose = Pose { mode: CameraMode::Fly, ..*camera.pose.now() };
-        camera.pose = camera.pose.replaced(pose);
-        Command::Replace(Item::Camera(camera_id, Box::new(camera)))
-    };
-    fallen.map(fly).collect()
+    fallen.filter_map(|(id, _)| set_mode(scene, id, CameraMode::Fly).ok()).collect()
 }
 
 /// Selects an item and makes its kind the subject, as a click in the outline does.
@@ -120,7 +110,6 @@ pub fn next(scene: &Scene, view: &View, phase: GesturePhase) -> Result<Selection
 }
 
 /// Returns the item that the subject's keys act on.
-#[must_use]
 pub fn selected(view: &View) -> Option<ItemId> {
     match view.subject {
         Subject::Camera => Some(ItemId::Camera(view.camera)),
@@ -130,7 +119,6 @@ pub fn selected(view: &View) -> Option<ItemId> {
 }
 
 /// Returns the subject for items of this kind.
-#[must_use]
 pub const fn subject_of(id: ItemId) -> Subject {
     match id {
         ItemId::Object(_) => Subject::Object,

@@ -5,11 +5,12 @@
 
 use glam::{DMat3, DMat4, DVec3};
 
-use super::{GesturePhase, Refusal};
+use super::items::one_or_batch;
+use super::{Change, GesturePhase, Refusal};
 use crate::base::math;
 use crate::scene::{
     Aim, Anchor, AnchorMut, CameraId, CameraMode, Command, CommandError, Item, ItemId, Lens, Light,
-    LightId, Object, ObjectId, Pose, Scene, SpotOwner, Tracked, Transformation, View,
+    LightId, LightOrigin, Object, ObjectId, Pose, Scene, SpotOwner, Tracked, Transformation, View,
 };
 
 /// Returns the selected object.
@@ -45,7 +46,7 @@ pub(super) fn object(
     id: ObjectId,
     placement: DMat4,
     phase: GesturePhase,
-) -> Result<Command, Refusal> {
+) -> Change {
     let before = scene.objects.get(id).ok_or(Refusal::Gone)?;
     object_placed(scene, view, id, phase.apply(&before.placement, placement))
 }
@@ -56,7 +57,7 @@ pub(super) fn object_placed(
     view: &View,
     id: ObjectId,
     placement: Tracked<DMat4>,
-) -> Result<Command, Refusal> {
+) -> Change {
     if !placement.now().is_finite() {
         return Err(Refusal::TooLarge);
     }
@@ -78,16 +79,11 @@ pub(super) fn object_placed(
             commands.push(Command::Replace(Item::Camera(camera_id, Box::new(camera))));
         }
     }
-    Ok(if commands.len() == 1 { commands.remove(0) } else { Command::Batch(commands) })
+    Ok(one_or_batch(commands))
 }
 
 /// Gives the camera `id` another pose, with its axes made orthonormal.
-pub(super) fn pose(
-    scene: &Scene,
-    id: CameraId,
-    pose: Pose,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub(super) fn pose(scene: &Scene, id: CameraId, pose: Pose, phase: GesturePhase) -> Change {
     let lens = scene.cameras.get(id).ok_or(Refusal::Gone)?.lens;
     pose_and_lens(scene, id, pose, lens, phase)
 }
@@ -99,7 +95,7 @@ pub(super) fn pose_and_lens(
     pose: Pose,
     lens: Lens,
     phase: GesturePhase,
-) -> Result<Command, Refusal> {
+) -> Change {
     let mut camera = scene.cameras.get(id).ok_or(Refusal::Gone)?.clone();
     unlocked(scene, ItemId::Camera(id))?;
     if !(pose.eye.is_finite() && pose.axes.is_finite()) {
@@ -157,26 +153,24 @@ pub(super) fn analysis_centre(scene: &Scene, view: &View) -> Option<DVec3> {
     }
 }
 
-/// The part of a light that can be transformed.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum LightPlace {
-    Direction(DVec3),
-    Position(DVec3),
-    Aim(Aim),
-}
-
-/// Returns the part of a light that can be transformed, or the reason why it cannot be transformed.
-pub(super) fn place_of(light: &Light) -> Result<LightPlace, Refusal> {
-    match light.kind.anchor() {
-        Anchor::Everywhere => Err(Refusal::Ambient),
-        Anchor::Direction(direction) => Ok(LightPlace::Direction(*direction.now())),
-        Anchor::Position(position) => Ok(LightPlace::Position(*position.now())),
+/// Returns the position and the direction of a light that can be set, or the reason why it cannot be
+/// transformed.
+pub(super) fn place_of(light: &Light) -> Result<LightOrigin, Refusal> {
+    let (position, direction) = match light.kind.anchor() {
+        Anchor::Everywhere => return Err(Refusal::Ambient),
+        Anchor::Direction(direction) => (None, Some(*direction.now())),
+        Anchor::Position(position) => (Some(*position.now()), None),
         Anchor::Owner(owner) => match owner {
-            SpotOwner::Fixed(aim) => Ok(LightPlace::Aim(*aim.now())),
-            SpotOwner::SelectedObject | SpotOwner::Object(_) => Err(Refusal::SpotFollows("object")),
-            SpotOwner::SelectedCamera | SpotOwner::Camera(_) => Err(Refusal::SpotFollows("camera")),
+            SpotOwner::Fixed(aim) => (Some(aim.now().position), Some(aim.now().direction)),
+            SpotOwner::SelectedObject | SpotOwner::Object(_) => {
+                return Err(Refusal::SpotFollows("object"));
+            }
+            SpotOwner::SelectedCamera | SpotOwner::Camera(_) => {
+                return Err(Refusal::SpotFollows("camera"));
+            }
         },
-    }
+    };
+    Ok(LightOrigin { position, direction })
 }
 
 /// Returns the transformation of x, y and z for a light, if `chosen` is asked for. A sun can only
@@ -186,39 +180,34 @@ pub(super) fn place_of(light: &Light) -> Result<LightPlace, Refusal> {
 /// If the light has neither a position nor a direction that can be set.
 pub fn transformation_of(light: &Light, chosen: Transformation) -> Result<Transformation, Refusal> {
     Ok(match place_of(light)? {
-        LightPlace::Direction(_) => Transformation::Rotation,
-        LightPlace::Position(_) => Transformation::Translation,
-        LightPlace::Aim(_) => chosen,
+        LightOrigin { position: None, .. } => Transformation::Rotation,
+        LightOrigin { direction: None, .. } => Transformation::Translation,
+        LightOrigin { .. } => chosen,
     })
 }
 
 /// Gives the light `id` another position or direction; `place` must suit the kind of light.
-pub(super) fn light(
-    scene: &Scene,
-    id: LightId,
-    place: LightPlace,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub(super) fn light(scene: &Scene, id: LightId, place: LightOrigin, phase: GesturePhase) -> Change {
     let mut light = scene.lights.get(id).ok_or(Refusal::NoLight)?.clone();
     unlocked(scene, ItemId::Light(id))?;
     // Checked before the light is changed: directions have length 1, positions are finite.
     let direction = |v: DVec3| math::unit(v).ok_or(Refusal::TooLarge);
     let position = |v: DVec3| if v.is_finite() { Ok(v) } else { Err(Refusal::TooLarge) };
-    match (light.kind.anchor_mut(), place) {
-        (AnchorMut::Direction(placed), LightPlace::Direction(to)) => {
+    match (light.kind.anchor_mut(), place.position, place.direction) {
+        (AnchorMut::Direction(placed), None, Some(to)) => {
             *placed = phase.apply(placed, direction(to)?);
         }
-        (AnchorMut::Position(placed), LightPlace::Position(to)) => {
+        (AnchorMut::Position(placed), Some(to), None) => {
             *placed = phase.apply(placed, position(to)?);
         }
-        (AnchorMut::Owner(SpotOwner::Fixed(placed)), LightPlace::Aim(to)) => {
-            let to = Aim { position: position(to.position)?, direction: direction(to.direction)? };
+        (AnchorMut::Owner(SpotOwner::Fixed(placed)), Some(at), Some(to)) => {
+            let to = Aim { position: position(at)?, direction: direction(to)? };
             *placed = phase.apply(placed, to);
         }
-        (AnchorMut::Everywhere, _) => return Err(Refusal::Ambient),
-        (AnchorMut::Direction(_), _) => return Err(Refusal::SunMoved),
-        (AnchorMut::Position(_), _) => return Err(Refusal::BulbTurned),
-        (AnchorMut::Owner(_), _) => {
+        (AnchorMut::Everywhere, ..) => return Err(Refusal::Ambient),
+        (AnchorMut::Direction(_), ..) => return Err(Refusal::SunMoved),
+        (AnchorMut::Position(_), ..) => return Err(Refusal::BulbTurned),
+        (AnchorMut::Owner(_), ..) => {
             place_of(&light)?;
             return Err(Refusal::Gone);
         }

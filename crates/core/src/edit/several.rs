@@ -6,7 +6,7 @@
 
 use std::collections::BTreeSet;
 
-use super::{Refusal, items, placement, selection};
+use super::{Change, Refusal, items, placement, selection};
 use crate::scene::{
     Anchor, AnchorMut, Camera, Command, Item, ItemId, LIGHT_NUMBERS, Light, LightKind, Object,
     Scene, SpotOwner, Subject, Tracked, View,
@@ -23,7 +23,6 @@ pub struct Others {
 
 impl Others {
     /// Selects these items in addition to `with`.
-    #[must_use]
     pub fn new(with: ItemId, items: impl IntoIterator<Item = ItemId>) -> Self {
         let items = items.into_iter().filter(|item| *item != with).collect();
         Self { with: Some(with), items }
@@ -48,8 +47,8 @@ pub fn each(
     scene: &Scene,
     view: &View,
     others: &[ItemId],
-    act: impl Fn(&Scene, &View) -> Result<Command, Refusal>,
-) -> Result<Command, Refusal> {
+    act: impl Fn(&Scene, &View) -> Change,
+) -> Change {
     if others.is_empty() {
         return act(scene, view);
     }
@@ -90,7 +89,7 @@ fn as_if_selected(view: &View, id: ItemId) -> View {
 ///
 /// # Errors
 /// If the selected item is gone.
-pub fn toggle_shown(scene: &Scene, view: &View, others: &[ItemId]) -> Result<Command, Refusal> {
+pub fn toggle_shown(scene: &Scene, view: &View, others: &[ItemId]) -> Change {
     let shown = |scene: &Scene, id| match id {
         ItemId::Object(id) => scene.objects.get(id).is_some_and(|object| object.visible),
         ItemId::Camera(id) => scene.cameras.get(id).is_some_and(|camera| camera.visible),
@@ -109,7 +108,7 @@ pub fn toggle_shown(scene: &Scene, view: &View, others: &[ItemId]) -> Result<Com
 ///
 /// # Errors
 /// If the selected item is gone.
-pub fn toggle_locked(scene: &Scene, view: &View, others: &[ItemId]) -> Result<Command, Refusal> {
+pub fn toggle_locked(scene: &Scene, view: &View, others: &[ItemId]) -> Change {
     let first = selection::selected(view).ok_or(Refusal::Gone)?;
     let before = scene.locked.contains(&first);
     let alike = |id: &ItemId| scene.locked.contains(id) == before;
@@ -317,7 +316,6 @@ fn owner_alike(before: &SpotOwner, after: &SpotOwner, own: &mut SpotOwner) {
 
 /// Returns all listed items of the subject's list. If all of these are already selected, the listed
 /// items of all lists.
-#[must_use]
 pub fn all(
     scene: &Scene,
     view: &View,

@@ -11,7 +11,6 @@ use crate::scene::{Object, Scene, Shape, Steps, View};
 const STEPS_ACROSS: f64 = 100.0;
 
 /// Returns the length of a step of translation, in units of the world.
-#[must_use]
 pub fn length(scene: &Scene, view: &View) -> f64 {
     let by_size = || rounded(extent(scene) / STEPS_ACROSS);
     view.steps.by_size.then(by_size).flatten().unwrap_or(view.steps.translation)
@@ -23,7 +22,6 @@ pub fn length(scene: &Scene, view: &View) -> f64 {
 /// Each object counts as a cube as wide as its largest extent, so turning it does not change the
 /// extent of the scene, nor does moving a single object. Ground and plane shapes do not count if
 /// there are other objects, because they are larger than the objects on them.
-#[must_use]
 pub fn extent(scene: &Scene) -> f64 {
     let cube = |object: &Object| {
         let mesh = &object.model.mesh;
@@ -41,7 +39,6 @@ pub fn extent(scene: &Scene) -> f64 {
 }
 
 /// Returns the spacing of the lines of the ground grid. Ten of them are about as long as the scene.
-#[must_use]
 pub fn of_grid(scene: &Scene) -> f64 {
     rounded(extent(scene) / 10.0).unwrap_or(Steps::DEFAULT.translation)
 }

@@ -9,13 +9,13 @@
 
 use glam::{DMat3, DMat4, DVec3};
 
-use super::set_transform::{self, LightPlace};
+use super::set_transform;
 pub use super::set_transform::{aimed_again, transformation_of};
-use super::{GesturePhase, Refusal, steps};
+use super::{Change, GesturePhase, Refusal, steps};
 use crate::base::math::{self, Axis};
 use crate::scene::{
-    Aim, AnchorMut, CameraMode, Command, Frame, Item, ItemId, Orbit, Pose, Scene, SpotOwner,
-    Subject, Transformation, View,
+    AnchorMut, CameraMode, Command, Frame, Item, ItemId, Orbit, Pose, Scene, SpotOwner, Subject,
+    Transformation, View,
 };
 
 /// The direction of a step along or about an axis.
@@ -29,7 +29,6 @@ pub enum Sign {
 
 impl Sign {
     /// Applies this sign to an amount.
-    #[must_use]
     pub const fn of(self, amount: f64) -> f64 {
         match self {
             Self::Positive => amount,
@@ -42,13 +41,7 @@ impl Sign {
 ///
 /// # Errors
 /// If the item cannot be transformed in this way.
-pub fn step(
-    scene: &Scene,
-    view: &View,
-    axis: Axis,
-    sign: Sign,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub fn step(scene: &Scene, view: &View, axis: Axis, sign: Sign, phase: GesturePhase) -> Change {
     let along = || axis.unit() * sign.of(distance(scene, view, axis));
     let radians = sign.of(view.steps.rotation.to_radians());
     match view.subject {
@@ -69,15 +62,11 @@ pub fn step(
             (Axis::Z, Transformation::Rotation) => rotate(scene, view, DVec3::Z, radians, phase),
         },
         Subject::Light => {
-            match set_transform::place_of(set_transform::selected_light(scene, view)?.1)? {
-                // A sun can only be turned and a bulb only be moved, for any transformation.
-                LightPlace::Direction(_) => rotate(scene, view, axis.unit(), radians, phase),
-                LightPlace::Position(_) => translate(scene, view, along(), phase),
-                LightPlace::Aim(_) => match view.transformation {
-                    Transformation::Translation => translate(scene, view, along(), phase),
-                    Transformation::Rotation => rotate(scene, view, axis.unit(), radians, phase),
-                    Transformation::Scaling => Err(Refusal::LightScaled),
-                },
+            let (_, light) = set_transform::selected_light(scene, view)?;
+            match transformation_of(light, view.transformation)? {
+                Transformation::Translation => translate(scene, view, along(), phase),
+                Transformation::Rotation => rotate(scene, view, axis.unit(), radians, phase),
+                Transformation::Scaling => Err(Refusal::LightScaled),
             }
         }
     }
@@ -85,7 +74,6 @@ pub fn step(
 
 /// Returns the distance of one step along `axis` for the selected item of the subject, in the units
 /// of the item's frame.
-#[must_use]
 pub fn distance(scene: &Scene, view: &View, axis: Axis) -> f64 {
     let length = steps::length(scene, view);
     match view.object.and_then(|id| scene.objects.get(id)) {
@@ -107,12 +95,7 @@ pub fn distance(scene: &Scene, view: &View, axis: Axis) -> f64 {
 ///
 /// # Errors
 /// If the item cannot be moved.
-pub fn translate(
-    scene: &Scene,
-    view: &View,
-    delta: DVec3,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub fn translate(scene: &Scene, view: &View, delta: DVec3, phase: GesturePhase) -> Change {
     match view.subject {
         Subject::Object => transform(scene, view, DMat4::from_translation(delta), phase),
         Subject::Camera => {
@@ -128,13 +111,8 @@ pub fn translate(
             let delta = light.kind.orbit().map_or(delta, |orbit| {
                 Orbit { speed: -orbit.speed, ..*orbit }.at(delta, view.time)
             });
-            let place = match set_transform::place_of(light)? {
-                LightPlace::Direction(_) => return Err(Refusal::SunMoved),
-                LightPlace::Position(position) => LightPlace::Position(position + delta),
-                LightPlace::Aim(aim) => {
-                    LightPlace::Aim(Aim { position: aim.position + delta, ..aim })
-                }
-            };
+            let mut place = set_transform::place_of(light)?;
+            place.position = Some(place.position.ok_or(Refusal::SunMoved)? + delta);
             set_transform::light(scene, id, place, phase)
         }
     }
@@ -152,7 +130,7 @@ pub fn rotate(
     axis: DVec3,
     radians: f64,
     phase: GesturePhase,
-) -> Result<Command, Refusal> {
+) -> Change {
     let turn = |axis| set_transform::turn(axis, radians);
     match view.subject {
         Subject::Object => transform(scene, view, DMat4::from_mat3(turn(axis)?), phase),
@@ -166,13 +144,9 @@ pub fn rotate(
         }
         Subject::Light => {
             let (id, light) = set_transform::selected_light(scene, view)?;
-            let place = match set_transform::place_of(light)? {
-                LightPlace::Direction(direction) => LightPlace::Direction(turn(axis)? * direction),
-                LightPlace::Position(_) => return Err(Refusal::BulbTurned),
-                LightPlace::Aim(aim) => {
-                    LightPlace::Aim(Aim { direction: turn(axis)? * aim.direction, ..aim })
-                }
-            };
+            let mut place = set_transform::place_of(light)?;
+            let direction = place.direction.ok_or(Refusal::BulbTurned)?;
+            place.direction = Some(turn(axis)? * direction);
             set_transform::light(scene, id, place, phase)
         }
     }
@@ -182,12 +156,7 @@ pub fn rotate(
 ///
 /// # Errors
 /// If the subject is not objects, or the object would become flat.
-pub fn scale(
-    scene: &Scene,
-    view: &View,
-    factor: f64,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub fn scale(scene: &Scene, view: &View, factor: f64, phase: GesturePhase) -> Change {
     stretch(scene, view, DVec3::splat(factor), phase)
 }
 
@@ -196,12 +165,7 @@ pub fn scale(
 ///
 /// # Errors
 /// If the subject is not objects, or the object would become flat.
-pub fn stretch(
-    scene: &Scene,
-    view: &View,
-    factors: DVec3,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+pub fn stretch(scene: &Scene, view: &View, factors: DVec3, phase: GesturePhase) -> Change {
     match view.subject {
         Subject::Object => transform(scene, view, DMat4::from_scale(factors), phase),
         Subject::Camera => Err(Refusal::CameraScaled),
@@ -213,7 +177,7 @@ pub fn stretch(
 ///
 /// # Errors
 /// If the item was never transformed.
-pub fn take_back(scene: &Scene, view: &View) -> Result<Command, Refusal> {
+pub fn take_back(scene: &Scene, view: &View) -> Change {
     let nothing = Refusal::NothingToTakeBack;
     match view.subject {
         Subject::Object => {
@@ -248,7 +212,7 @@ pub fn take_back(scene: &Scene, view: &View) -> Result<Command, Refusal> {
 ///
 /// # Errors
 /// If no object is selected.
-pub fn toggle_analysis(scene: &Scene, view: &View) -> Result<Command, Refusal> {
+pub fn toggle_analysis(scene: &Scene, view: &View) -> Change {
     let pose = effective_pose(scene, view);
     match pose.mode {
         CameraMode::Analysis { .. } => {
@@ -264,12 +228,7 @@ pub fn toggle_analysis(scene: &Scene, view: &View) -> Result<Command, Refusal> {
 }
 
 /// Multiplies the placement of the selected object by `t`, on the side that the frame requires.
-fn transform(
-    scene: &Scene,
-    view: &View,
-    t: DMat4,
-    phase: GesturePhase,
-) -> Result<Command, Refusal> {
+fn transform(scene: &Scene, view: &View, t: DMat4, phase: GesturePhase) -> Change {
     let (id, object) = set_transform::selected_object(scene, view)?;
     let m = *object.placement.now();
     let placement = match view.frame {

@@ -50,7 +50,6 @@ pub enum SpotOwner {
 
 impl SpotOwner {
     /// Returns the position and direction of a fixed spot; `None` if an item owns the spot.
-    #[must_use]
     pub const fn fixed(&self) -> Option<&Tracked<Aim>> {
         match self {
             Self::Fixed(aim) => Some(aim),
@@ -98,7 +97,6 @@ impl Default for Orbit {
 impl Orbit {
     /// Returns the position of a bulb at `time` (seconds of the scene's clock) if it is placed at
     /// `position`.
-    #[must_use]
     pub fn at(&self, position: DVec3, time: f64) -> DVec3 {
         if !self.on {
             return position;

@@ -13,13 +13,11 @@ pub struct Bounds {
 
 impl Bounds {
     /// Returns the extent of points; `None` if the list is empty.
-    #[must_use]
     pub fn of(points: impl IntoIterator<Item = DVec3>) -> Option<Self> {
         points.into_iter().map(Self::at).reduce(|all, p| all.around(&p))
     }
 
     /// Returns the box of one point.
-    #[must_use]
     pub const fn at(point: DVec3) -> Self {
         Self { min: point, max: point }
     }
@@ -31,25 +29,21 @@ impl Bounds {
     }
 
     /// Returns the middle of the box.
-    #[must_use]
     pub fn centre(&self) -> DVec3 {
         (self.min + self.max) * 0.5
     }
 
     /// Returns length, height and width of the box.
-    #[must_use]
     pub fn extent(&self) -> DVec3 {
         self.max - self.min
     }
 
     /// Returns the point of the box nearest to a point.
-    #[must_use]
     pub fn nearest_to(&self, place: DVec3) -> DVec3 {
         place.max(self.min).min(self.max)
     }
 
     /// Returns the eight corners of the box.
-    #[must_use]
     pub fn corners(&self) -> [DVec3; 8] {
         let pick = |i: usize, bit: usize, axis: usize| {
             if i & bit == 0 { self.min[axis] } else { self.max[axis] }

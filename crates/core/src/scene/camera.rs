@@ -24,6 +24,15 @@ pub struct Camera {
     pub lens: Lens,
 }
 
+impl Camera {
+    /// Creates a camera at `eye` that looks along -Z, with the default lens.
+    pub fn new(name: &str, model: Shared<Model>, material: MaterialChoice, eye: DVec3) -> Self {
+        let pose = Tracked::new(Pose::facing_minus_z(eye));
+        let lens = Lens::default();
+        Self { name: name.to_owned(), visible: true, model, material, pose, lens }
+    }
+}
+
 /// The position, orientation and mode of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
@@ -50,20 +59,17 @@ pub enum CameraMode {
 
 impl Pose {
     /// Creates a pose at `eye` that looks along -Z.
-    #[must_use]
     pub const fn facing_minus_z(eye: DVec3) -> Self {
         Self { eye, axes: DMat3::IDENTITY, mode: CameraMode::Fly }
     }
 
     /// Returns the matrix `world_from_camera`.
-    #[must_use]
     pub fn world_from_camera(&self) -> DMat4 {
         math::placed(self.axes, self.eye)
     }
 
     /// Creates a pose from a matrix `world_from_camera`; `None` unless it is a rotation with a
     /// position. Matrices in files have few digits, so the axes are made orthonormal again.
-    #[must_use]
     pub fn from_matrix(world_from_camera: DMat4) -> Option<Self> {
         /// The largest difference of an entry of R R' from the identity.
         const MOST: f64 = 1e-3;
@@ -79,7 +85,6 @@ impl Pose {
     }
 
     /// Returns the current mode. The camera orbits only while its target is the selected object.
-    #[must_use]
     pub fn mode_with(&self, selected: Option<ObjectId>) -> CameraMode {
         match self.mode {
             CameraMode::Analysis { target } if Some(target) == selected => self.mode,
@@ -121,7 +126,6 @@ impl Default for Lens {
 
 impl Lens {
     /// Returns whether the lens gives a valid projection.
-    #[must_use]
     pub fn is_valid(&self) -> bool {
         let Self { half_angle, near, far, half_size, parallel_near, parallel_far } = *self;
         let finite = [half_angle, near, far, half_size, parallel_near, parallel_far];
@@ -135,7 +139,6 @@ impl Lens {
     }
 
     /// Returns the matrix `clip_from_view` for a picture of this size.
-    #[must_use]
     pub fn clip_from_view(&self, projection: Projection, size: Size) -> DMat4 {
         match projection {
             Projection::Perspective => {

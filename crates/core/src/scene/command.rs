@@ -56,7 +56,6 @@ pub enum Item {
 
 impl Item {
     /// Returns the id.
-    #[must_use]
     pub const fn id(&self) -> ItemId {
         match self {
             Self::Object(id, _) => ItemId::Object(*id),
@@ -144,7 +143,6 @@ impl Command {
 
     /// Returns whether `self`, applied right after `earlier`, overwrites everything that `earlier`
     /// set.
-    #[must_use]
     pub fn overwrites(&self, earlier: &Self) -> bool {
         match (self, earlier) {
             (Self::Replace(a), Self::Replace(b)) => a.id() == b.id(),

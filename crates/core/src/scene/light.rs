@@ -45,7 +45,6 @@ impl Default for Attenuation {
 
 impl Attenuation {
     /// Returns whether the light at every distance is finite and not negative.
-    #[must_use]
     pub fn is_valid(&self) -> bool {
         let all = [self.constant, self.linear, self.quadratic];
         all.iter().all(|x| x.is_finite() && *x >= 0.0) && all.iter().any(|x| *x > 0.0)
@@ -54,13 +53,11 @@ impl Attenuation {
 
 impl Light {
     /// Returns whether the light can cast shadows. Ambient light cannot.
-    #[must_use]
     pub const fn can_cast_shadows(&self) -> bool {
         !matches!(self.kind.anchor(), Anchor::Everywhere)
     }
 
     /// Creates a white light that is on.
-    #[must_use]
     pub fn new(name: &str, slot: u32, kind: LightKind) -> Self {
         Self {
             name: name.to_owned(),
@@ -75,7 +72,6 @@ impl Light {
 
     /// Returns the five lights of the first scene: ambient, sun, bulb, and the spots of the
     /// selected object and of the selected camera.
-    #[must_use]
     pub fn five() -> [Self; 5] {
         let spot = |owner| LightKind::Spot { owner, half_aperture: 22.5, exponent: 5.0 };
         let sun = LightKind::Sun { direction: Tracked::new(DVec3::NEG_Y) };

@@ -116,7 +116,6 @@ pub static LIGHT_NUMBERS: [&LightNumber; 2] = [&HALF_APERTURE, &CONCENTRATION];
 
 impl LightNumber {
     /// Returns whether a light may have this value.
-    #[must_use]
     pub fn is_valid(&self, number: f64) -> bool {
         (0.0..=self.largest).contains(&number)
     }
@@ -124,7 +123,6 @@ impl LightNumber {
 
 impl LightKind {
     /// Returns the facts about this kind of light.
-    #[must_use]
     pub const fn info(&self) -> LightKindInfo {
         match self {
             Self::Ambient => LightKindInfo { name: "ambient", icon: "\u{e3e4}" },
@@ -135,7 +133,6 @@ impl LightKind {
     }
 
     /// Returns the source of the light's position and direction.
-    #[must_use]
     pub const fn anchor(&self) -> Anchor<'_> {
         match self {
             Self::Ambient => Anchor::Everywhere,
@@ -156,7 +153,6 @@ impl LightKind {
     }
 
     /// Returns the circular motion, if lights of this kind can circle.
-    #[must_use]
     pub const fn orbit(&self) -> Option<&Orbit> {
         match self {
             Self::Bulb { orbit, .. } => Some(orbit),
@@ -178,7 +174,6 @@ impl LightKind {
     }
 
     /// Returns the owner, if lights of this kind have one.
-    #[must_use]
     pub const fn owner(&self) -> Option<&SpotOwner> {
         match self.anchor() {
             Anchor::Owner(owner) => Some(owner),
@@ -187,7 +182,6 @@ impl LightKind {
     }
 
     /// Returns whether the light has a position and thus fades with distance.
-    #[must_use]
     pub const fn has_position(&self) -> bool {
         match self.anchor() {
             Anchor::Position(_) | Anchor::Owner(_) => true,
@@ -196,7 +190,6 @@ impl LightKind {
     }
 
     /// Returns whether the light has a direction and thus can be aimed.
-    #[must_use]
     pub const fn has_direction(&self) -> bool {
         match self.anchor() {
             Anchor::Direction(_) | Anchor::Owner(_) => true,
@@ -205,13 +198,11 @@ impl LightKind {
     }
 
     /// Returns whether a diamond marks the light's position in the picture.
-    #[must_use]
     pub const fn has_diamond(&self) -> bool {
         matches!(self.anchor(), Anchor::Position(_))
     }
 
     /// Returns whether the numbers are valid, and the position and direction finite.
-    #[must_use]
     pub fn is_valid(&self) -> bool {
         let anchored = match self.anchor() {
             Anchor::Everywhere => true,

@@ -49,31 +49,26 @@ impl<K: PartialEq, T: PartialEq, D> PartialEq for List<K, T, D> {
 
 impl<K: Copy + Eq + Hash, T, D> List<K, T, D> {
     /// Returns the number of items.
-    #[must_use]
     pub fn len(&self) -> usize {
         self.items.len()
     }
 
     /// Returns whether the list is empty.
-    #[must_use]
     pub fn is_empty(&self) -> bool {
         self.items.is_empty()
     }
 
     /// Returns the position of the item with this id.
-    #[must_use]
     pub fn position(&self, id: K) -> Option<usize> {
         self.items.get_index_of(&id)
     }
 
     /// Returns whether the list has an item with this id.
-    #[must_use]
     pub fn contains(&self, id: K) -> bool {
         self.items.contains_key(&id)
     }
 
     /// Returns the item with this id.
-    #[must_use]
     pub fn get(&self, id: K) -> Option<&T> {
         self.items.get(&id).map(|item| &**item)
     }
@@ -84,7 +79,6 @@ impl<K: Copy + Eq + Hash, T, D> List<K, T, D> {
     }
 
     /// Returns the item at a position, counted from 0, with its id.
-    #[must_use]
     pub fn at(&self, at: usize) -> Option<(K, &T)> {
         self.items.get_index(at).map(|(id, item)| (*id, &**item))
     }
@@ -101,26 +95,22 @@ impl<K: Copy + Eq + Hash, T, D> List<K, T, D> {
     }
 
     /// Returns the id of the first item.
-    #[must_use]
     pub fn first(&self) -> Option<K> {
         self.id_at(0)
     }
 
     /// Returns the id at a position, counted from 0.
-    #[must_use]
     pub fn id_at(&self, at: usize) -> Option<K> {
         self.items.get_index(at).map(|(id, _)| *id)
     }
 
     /// Returns the id after `id`, wrapping at the end; the first if `id` is not in the list.
-    #[must_use]
     pub fn after(&self, id: Option<K>) -> Option<K> {
         let next = id.and_then(|id| self.position(id)).map_or(0, |at| at + 1);
         self.id_at(next).or_else(|| self.first())
     }
 
     /// Returns the first id that is not in `before`.
-    #[must_use]
     pub fn first_since(&self, before: &Self) -> Option<K> {
         if Arc::ptr_eq(&self.items, &before.items) {
             return None;

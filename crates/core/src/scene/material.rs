@@ -18,6 +18,13 @@ pub struct Material {
     pub emission: [f64; 3],
 }
 
+impl Material {
+    /// Creates a material without highlights and without light of its own.
+    pub const fn matte(ambient: [f64; 3], diffuse: [f64; 3]) -> Self {
+        Self { ambient, diffuse, specular: [0.0; 3], exponent: 1.0, emission: [0.0; 3] }
+    }
+}
+
 fn is_dark(emission: &[f64; 3]) -> bool {
     *emission == [0.0; 3]
 }
@@ -63,7 +70,6 @@ impl PresetId {
     }
 
     /// Returns the row with this name. Case, blanks, `-` and `_` are ignored.
-    #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         let plain = |text: &str| -> String {
             let letters = text.chars().filter(|c| !matches!(c, ' ' | '-' | '_'));
@@ -73,7 +79,6 @@ impl PresetId {
     }
 
     /// Returns the row.
-    #[must_use]
     pub const fn get(self) -> &'static Preset {
         &PRESETS[self.0]
     }

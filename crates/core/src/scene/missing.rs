@@ -15,7 +15,6 @@ impl Object {
 
 impl Camera {
     /// Returns the file of the camera's model, if it is missing.
-    #[must_use]
     pub fn missing_file(&self) -> Option<&Path> {
         missing(&self.model)
     }
@@ -23,7 +22,6 @@ impl Camera {
 
 impl Scene {
     /// Returns the missing files of all models and textures.
-    #[must_use]
     pub fn missing_files(&self) -> BTreeSet<&Path> {
         let of_objects = self.objects.iter().flat_map(|(_, object)| object.missing_files());
         let of_cameras = self.cameras.iter().filter_map(|(_, camera)| camera.missing_file());

@@ -121,7 +121,6 @@ impl Scene {
     pub const NEUTRAL: Color = Color([88, 92, 98]);
 
     /// Creates a scene with one camera and no other items.
-    #[must_use]
     pub fn with_camera(camera: Camera) -> Self {
         Self {
             objects: List::default(),
@@ -134,7 +133,6 @@ impl Scene {
     }
 
     /// Returns whether the scene has an item with this id.
-    #[must_use]
     pub fn contains(&self, id: ItemId) -> bool {
         match id {
             ItemId::Object(id) => self.objects.contains(id),
@@ -144,7 +142,6 @@ impl Scene {
     }
 
     /// Returns the name of an item.
-    #[must_use]
     pub fn name(&self, id: ItemId) -> Option<&str> {
         Some(match id {
             ItemId::Object(id) => &self.objects.get(id)?.name,
@@ -154,7 +151,6 @@ impl Scene {
     }
 
     /// Returns the lowest free slot.
-    #[must_use]
     pub fn free_slot(&self) -> u32 {
         let taken: BTreeSet<u32> = self.lights.iter().map(|(_, light)| light.slot).collect();
         (0..).find(|slot| !taken.contains(slot)).unwrap_or(0)
@@ -162,7 +158,6 @@ impl Scene {
 
     /// Returns the first view of a scene. It selects the first object, camera and light; suns
     /// precede other lights.
-    #[must_use]
     pub fn first_view(&self) -> View {
         let is_sun = |light: &Light| matches!(light.kind.anchor(), Anchor::Direction(_));
         let sun = self.lights.iter().find(|(_, light)| is_sun(light));
@@ -172,7 +167,6 @@ impl Scene {
     }
 
     /// Returns the selected camera, or the first camera if the selected one is gone.
-    #[must_use]
     pub fn selected_camera(&self, view: &View) -> &Camera {
         let first = || self.cameras.first().and_then(|id| self.cameras.get(id));
         self.cameras.get(view.camera).or_else(first).expect("a scene always has a camera")
@@ -180,7 +174,6 @@ impl Scene {
 
     /// Returns the frame of an object as an observer, and of its spot. The axes come from the Z and
     /// Y columns by Gram-Schmidt, so the frame is never mirrored or scaled.
-    #[must_use]
     pub fn frame_of_object(object: &Object, time: f64) -> DMat4 {
         let m = object.world_from_object(time);
         let axes = DMat3::from_mat4(m);
@@ -189,7 +182,6 @@ impl Scene {
     }
 
     /// Returns the current position and direction of a spot; `None` if its owner is gone.
-    #[must_use]
     pub fn aim(&self, view: &View, owner: &SpotOwner) -> Option<Aim> {
         let object = |id| self.objects.get(id).map(|o| Self::frame_of_object(o, view.time));
         let camera = |id| self.cameras.get(id).map(|c| c.pose.now().world_from_camera());
@@ -204,7 +196,6 @@ impl Scene {
     }
 
     /// Returns the current position and direction of a light; `None` if its owner is gone.
-    #[must_use]
     pub fn light_origin(&self, view: &View, kind: &LightKind) -> Option<LightOrigin> {
         let circled = |at: DVec3| kind.orbit().map_or(at, |orbit| orbit.at(at, view.time));
         let (position, direction) = match kind.anchor() {
@@ -221,7 +212,6 @@ impl Scene {
 
     /// Returns the matrix `world_from_view` of the observer: the frame of the selected object if
     /// the view asks for it and an object is selected, else the frame of the selected camera.
-    #[must_use]
     pub fn observer_frame(&self, view: &View) -> DMat4 {
         let object = match view.observer {
             Observer::Object => view.object.and_then(|id| self.objects.get(id)),

@@ -29,24 +29,28 @@ pub struct Model {
 }
 
 impl Model {
-    /// Builds a box of this side that replaces a missing or unreadable model. The box keeps the
-    /// file's path and options, so saving the scene loses neither.
-    #[must_use]
-    pub fn placeholder(source: PathBuf, options: LoadOptions, side: f64) -> Self {
-        let stem = source.file_stem().unwrap_or(source.as_os_str());
+    /// Creates a model of this shape that comes from no file.
+    pub fn of_mesh(name: &str, mesh: Mesh) -> Self {
         Self {
-            name: stem.to_string_lossy().into_owned(),
-            source: Some(source),
-            options,
+            name: name.to_owned(),
+            source: None,
             companions: Vec::new(),
-            mesh: Mesh::placeholder(side),
+            options: LoadOptions::default(),
+            mesh,
             materials: Vec::new(),
             edge_color: None,
         }
     }
 
+    /// Builds a box of this side that replaces a missing or unreadable model. The box keeps the
+    /// file's path and options, so saving the scene loses neither.
+    pub fn placeholder(source: PathBuf, options: LoadOptions, side: f64) -> Self {
+        let stem = source.file_stem().unwrap_or(source.as_os_str()).to_string_lossy();
+        let model = Self::of_mesh(&stem, Mesh::placeholder(side));
+        Self { source: Some(source), options, ..model }
+    }
+
     /// Returns whether the model is a box that replaces a missing file.
-    #[must_use]
     pub const fn is_placeholder(&self) -> bool {
         self.mesh.is_placeholder()
     }
@@ -67,7 +71,6 @@ impl Model {
 
     /// Returns whether both come from one reading of a file, and so differ at most in their crease
     /// angles.
-    #[must_use]
     pub fn shares_file_with(&self, other: &Self) -> bool {
         self.mesh.shares_shape_with(&other.mesh)
     }
@@ -130,7 +133,6 @@ impl UpAxis {
         [Self::X, Self::Y, Self::Z, Self::MinusX, Self::MinusY, Self::MinusZ];
 
     /// Returns the axis as a word: "z", "-z".
-    #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
             Self::X => "x",
@@ -143,7 +145,6 @@ impl UpAxis {
     }
 
     /// Turns a position or direction of the file so that this axis points up.
-    #[must_use]
     pub fn upright<T: Copy + Neg<Output = T>>(self, [x, y, z]: [T; 3]) -> [T; 3] {
         match self {
             Self::X => [-y, x, z],
@@ -163,13 +164,11 @@ pub struct Scale(f64);
 
 impl Scale {
     /// Returns `factor` as a scale if it is finite and more than 0.
-    #[must_use]
     pub fn new(factor: f64) -> Option<Self> {
         (factor.is_finite() && factor > 0.0).then_some(Self(factor))
     }
 
     /// Returns the factor.
-    #[must_use]
     pub const fn get(self) -> f64 {
         self.0
     }
@@ -224,6 +223,21 @@ pub struct FileMaterial {
     pub unlit: bool,
     /// The numbers of statements that do not affect pictures, such as `Ni` and `Pr`, for exports.
     pub undrawn: Undrawn,
+}
+
+impl FileMaterial {
+    /// Creates an opaque material without pictures.
+    pub fn new(name: &str, material: Material) -> Self {
+        Self {
+            name: name.to_owned(),
+            material,
+            opacity: 1.0,
+            texture: None,
+            maps: SurfaceMaps::new(),
+            unlit: false,
+            undrawn: Undrawn::new(),
+        }
+    }
 }
 
 /// The numbers of statements that do not affect pictures, by the usual spelling of the keyword.

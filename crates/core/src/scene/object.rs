@@ -90,13 +90,11 @@ impl Default for Spin {
 
 impl Spin {
     /// Returns whether the object turns about any axis.
-    #[must_use]
     pub fn is_on(&self) -> bool {
         self.axes.contains(&true)
     }
 
     /// Returns the rotation at `time`, in seconds of the scene's clock.
-    #[must_use]
     pub fn at(&self, time: f64) -> DMat3 {
         // Whole turns are dropped, since a small angle keeps more digits.
         let degrees = (self.speed * (time - self.since)) % 360.0;
@@ -112,7 +110,6 @@ impl Spin {
 impl Object {
     /// Places a model at the centre of the world, with the orientation of its file. A model from a
     /// file gets [`Sides::Auto`], a built-in one [`Sides::One`].
-    #[must_use]
     pub fn new(model: Shared<Model>, material: MaterialChoice) -> Self {
         Self {
             name: model.name.clone(),
@@ -133,7 +130,6 @@ impl Object {
     }
 
     /// Returns whether both sides of the object's faces are drawn and lit.
-    #[must_use]
     pub fn is_two_sided(&self) -> bool {
         match self.sides {
             Sides::One => false,
@@ -143,7 +139,6 @@ impl Object {
     }
 
     /// Returns the matrix `world_from_object` at `time`, in seconds of the scene's clock.
-    #[must_use]
     pub fn world_from_object(&self, time: f64) -> DMat4 {
         let placement = *self.placement.now();
         if self.spin.is_on() { placement * DMat4::from_mat3(self.spin.at(time)) } else { placement }
@@ -151,7 +146,6 @@ impl Object {
 
     /// Returns the matrix `world_from_mesh` at `time`. It places the positions of the mesh, which
     /// are relative to [`Mesh::offset`](super::Mesh::offset).
-    #[must_use]
     pub fn world_from_mesh(&self, time: f64) -> DMat4 {
         self.world_from_object(time) * self.model.mesh.object_from_mesh()
     }
@@ -163,14 +157,12 @@ impl Object {
     }
 
     /// Returns the mean of the object's vertices in the world.
-    #[must_use]
     pub fn centre(&self, time: f64) -> DVec3 {
         self.world_from_mesh(time).transform_point3(self.model.mesh.mean())
     }
 
     /// Returns the centre and radius of a bounding sphere in the world. The centre is the middle of
     /// the model's box, and the sphere passes through the farthest vertex. `None` without vertices.
-    #[must_use]
     pub fn bounding_sphere(&self, time: f64) -> Option<(DVec3, f64)> {
         let middle = self.model.mesh.bounds()?.centre();
         let centre = self.world_from_mesh(time).transform_point3(middle);
@@ -180,7 +172,6 @@ impl Object {
 
     /// Returns the largest side of the object's box along the object's axes, in world units. Steps
     /// "by size" depend on it.
-    #[must_use]
     pub fn largest_extent(&self) -> f64 {
         let Some(bounds) = self.model.mesh.bounds() else { return 0.0 };
         let m = *self.placement.now();
@@ -191,20 +182,17 @@ impl Object {
 
     /// Returns whether a part of the model is drawn. A placeholder is drawn as a whole, since the
     /// hidden parts belong to the missing file.
-    #[must_use]
     pub fn shows_part(&self, part: u32) -> bool {
         self.model.is_placeholder() || !self.hidden_parts.contains(&part)
     }
 
     /// Returns the coefficients, opacity and texture of one of the model's parts.
-    #[must_use]
     pub fn part_look(&self, part: u32) -> PartLook<'_> {
         let named = self.model.mesh.parts().get(part as usize).and_then(|part| part.material);
         self.material_look(named.and_then(|material| self.model.materials.get(material as usize)))
     }
 
     /// Returns the coefficients, opacity and texture of a part with this material of the model.
-    #[must_use]
     pub fn material_look<'a>(&'a self, file: Option<&'a FileMaterial>) -> PartLook<'a> {
         let material = match &self.material {
             MaterialChoice::Preset(id) => id.get().material,
@@ -251,7 +239,6 @@ impl<'a> PartLook<'a> {
     /// Returns the map of this kind to show, if any. Like the file's texture, the file's maps apply
     /// to any chosen material. The exception is `map_d`, which goes with the `d` of the file's
     /// material.
-    #[must_use]
     pub fn map(&self, kind: MapKind) -> Option<&'a SurfaceMap> {
         self.maps?.get(&kind).filter(|_| kind != MapKind::Opacity || self.of_file)
     }

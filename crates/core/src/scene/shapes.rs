@@ -7,7 +7,7 @@
 
 use std::sync::OnceLock;
 
-use super::{LoadOptions, Mesh, Model};
+use super::{Mesh, Model};
 use crate::base::Shared;
 use crate::base::once::get_or_compute;
 use solids::Builder;
@@ -40,7 +40,6 @@ impl Shape {
 
     /// Returns whether the shape is a ground for other objects. A ground touches the lowest object,
     /// and is at least as large as the scene.
-    #[must_use]
     pub const fn is_ground(self) -> bool {
         match self {
             Self::Ground | Self::Plane => true,
@@ -49,7 +48,6 @@ impl Shape {
     }
 
     /// Returns the name, which scene files use, too.
-    #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Ground => "ground",
@@ -62,25 +60,16 @@ impl Shape {
     }
 
     /// Returns the shape with this name.
-    #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|shape| shape.name() == name)
     }
 
     /// Returns the model, shared by all objects of this shape.
-    #[must_use]
     pub fn model(self) -> Shared<Model> {
         static MODELS: [OnceLock<Shared<Model>>; 6] = [const { OnceLock::new() }; 6];
         let make = || {
-            Shared::new(Model {
-                name: self.name().to_owned(),
-                source: None,
-                companions: Vec::new(),
-                options: LoadOptions::default(),
-                mesh: self.mesh(),
-                materials: if self == Self::Ground { ground::materials() } else { Vec::new() },
-                edge_color: None,
-            })
+            let materials = if self == Self::Ground { ground::materials() } else { Vec::new() };
+            Shared::new(Model { materials, ..Model::of_mesh(self.name(), self.mesh()) })
         };
         get_or_compute(&MODELS[self as usize], make).clone()
     }

@@ -13,13 +13,11 @@ impl Crease {
     pub const SMOOTH: Self = Self(180.0);
 
     /// Returns `degrees` as a crease angle if they are from 0 to 180.
-    #[must_use]
     pub fn new(degrees: f64) -> Option<Self> {
         (0.0..=180.0).contains(&degrees).then_some(Self(degrees))
     }
 
     /// Returns the angle in degrees.
-    #[must_use]
     pub const fn get(self) -> f64 {
         self.0
     }

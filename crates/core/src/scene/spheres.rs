@@ -21,7 +21,6 @@ const ROUNDING: f64 = 1.0 + 1e-9;
 
 impl Objects {
     /// Returns a bounding sphere for each object. The result is kept until an object changes.
-    #[must_use]
     pub fn spheres(&self) -> &Spheres {
         self.derived(Spheres::of)
     }

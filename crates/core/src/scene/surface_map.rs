@@ -38,7 +38,6 @@ impl MapKind {
     ];
 
     /// Returns the statement of the map in an MTL file.
-    #[must_use]
     pub const fn statement(self) -> &'static str {
         match self {
             Self::Ambient => "map_Ka",
@@ -52,7 +51,6 @@ impl MapKind {
     }
 
     /// Returns the name of the map in the interface.
-    #[must_use]
     pub const fn label(self) -> &'static str {
         match self {
             Self::Ambient => "Ambient map",

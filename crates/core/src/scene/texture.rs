@@ -34,16 +34,19 @@ fn placeholder() -> &'static Shared<Picture> {
 }
 
 impl Texture {
+    /// Creates a texture that repeats, and that uses texture coordinates as they are.
+    pub fn new(source: impl Into<PathBuf>, picture: impl Into<Shared<Picture>>) -> Self {
+        let (source, picture) = (source.into(), picture.into());
+        Self { source, picture, wrap: Wrap::Repeat, offset: [0.0; 2], scale: [1.0; 2] }
+    }
+
     /// Builds a texture that replaces a missing or unreadable file. It keeps the file's path, so
     /// saving the scene does not lose it.
-    #[must_use]
     pub fn placeholder(source: PathBuf) -> Self {
-        let (wrap, offset, scale) = (Wrap::default(), [0.0; 2], [1.0; 2]);
-        Self { source, picture: placeholder().clone(), wrap, offset, scale }
+        Self::new(source, placeholder().clone())
     }
 
     /// Returns whether the texture replaces a missing file.
-    #[must_use]
     pub fn is_placeholder(&self) -> bool {
         Shared::same(&self.picture, placeholder())
     }

@@ -24,14 +24,12 @@ impl<T> Tracked<T> {
     }
 
     /// Returns the number of earlier values.
-    #[must_use]
     pub fn depth(&self) -> usize {
         self.earlier().count()
     }
 
     /// Returns whether both have the same earlier values, so one comes from the other without a
     /// push.
-    #[must_use]
     pub fn shares_stack_with(&self, other: &Self) -> bool {
         match (&self.before, &other.before) {
             (None, None) => true,

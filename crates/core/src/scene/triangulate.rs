@@ -35,7 +35,6 @@ const LOOKS: usize = 16;
 ///
 /// `normal` is the polygon's normal. There are `outline.len() - 2` triangles, even if the polygon
 /// crosses itself.
-#[must_use]
 pub fn triangulate(outline: &[DVec3], normal: DVec3) -> Vec<[u32; 3]> {
     Triangulator::default().cut(outline.iter().copied(), normal).to_vec()
 }

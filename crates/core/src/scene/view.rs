@@ -63,13 +63,11 @@ impl View {
     pub const MOST_EXPOSURE: f64 = 10.0;
 
     /// Returns the factor that the exposure gives to all light.
-    #[must_use]
     pub fn light_factor(&self) -> f64 {
         self.exposure.exp2()
     }
 
     /// Returns the first view of a scene.
-    #[must_use]
     pub const fn new(object: Option<ObjectId>, camera: CameraId, light: Option<LightId>) -> Self {
         Self {
             subject: Subject::Camera,
@@ -213,7 +211,6 @@ pub struct PolygonMode {
 
 impl PolygonMode {
     /// Starts the mode at polygon 0.
-    #[must_use]
     pub fn begin() -> Self {
         Self { current: 0, shown: BTreeSet::from([0]) }
     }

@@ -15,6 +15,7 @@ use flate2::write::DeflateEncoder;
 use gif::{DisposalMethod, Encoder, EncodingError, Frame, Repeat};
 
 use super::palette::{Colors, Dither, Palette};
+use crate::picture::sides_of;
 use marraztu_core::base::image::{Picture, Size};
 
 /// The most colours of a picture.
@@ -62,7 +63,7 @@ impl GifWriter {
 
     /// Encodes the file. `delay` is the time of each picture, in hundredths of a second.
     pub(super) fn finish(self, delay: impl Fn(usize) -> u16) -> Result<Vec<u8>, EncodingError> {
-        let [width, height] = super::sides(self.size).map(|side| u16::try_from(side).ok());
+        let [width, height] = sides_of(self.size).map(|side| u16::try_from(side).ok());
         let (Some(width), Some(height)) = (width, height) else {
             return Err(std::io::Error::other("a GIF has at most 65535 pixels a side").into());
         };

@@ -14,7 +14,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use self::gif::GifWriter;
 use super::error::reason;
-use super::picture::{check_picture_target, save_picture};
+use super::picture::{check_picture_target, save_picture, sides_of};
 use super::replace::{SaveError, Worth, check_target, replace};
 use super::sources::Sources;
 use marraztu_core::base::image::{Picture, Size};
@@ -187,7 +187,6 @@ impl AnimationWriter {
     }
 
     /// Returns the differences between the file and the request, one sentence each.
-    #[must_use]
     pub fn notes(&self) -> &[String] {
         &self.notes
     }
@@ -301,7 +300,7 @@ fn frame(folder: &Path, animation: &Animation, i: u32) -> PathBuf {
 }
 
 fn apng(to: Bytes, animation: &Animation) -> Result<png::Writer<Bytes>, png::EncodingError> {
-    let [width, height] = sides(animation.size);
+    let [width, height] = sides_of(animation.size);
     let mut encoder = png::Encoder::new(to, width, height);
     encoder.set_color(match animation.transparent {
         true => png::ColorType::Rgba,
@@ -312,10 +311,6 @@ fn apng(to: Bytes, animation: &Animation) -> Result<png::Writer<Bytes>, png::Enc
         encoder.set_animated(animation.frames, 0)?;
     }
     encoder.write_header()
-}
-
-fn sides(size: Size) -> [u32; 2] {
-    [size.width, size.height].map(|side| u32::try_from(side).unwrap_or(u32::MAX))
 }
 
 fn is_gif(path: &Path) -> bool {

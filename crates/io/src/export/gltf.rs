@@ -18,17 +18,8 @@ use gltf_json::{Index, Root};
 use super::gltf_buffer::Buffer;
 use super::look::{Detail, Looks};
 use super::names::Names;
-use super::{Content, escaped};
+use super::{Content, Format, escaped};
 use marraztu_core::scene::{Scene, View};
-
-/// The form of a glTF export.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Form {
-    /// A text and a separate buffer file.
-    Separate,
-    /// A single .glb file.
-    Binary,
-}
 
 pub(super) struct Writer<'a> {
     pub(super) scene: &'a Scene,
@@ -46,7 +37,7 @@ pub(super) fn written(
     stem: &str,
     scene: &Scene,
     view: &View,
-    form: Form,
+    format: Format,
 ) -> Result<Content, String> {
     let mut writer = Writer {
         scene,
@@ -78,7 +69,7 @@ pub(super) fn written(
     root.scene = Some(root.push(all));
     // A buffer without bytes is invalid, so a scene without faces gets no buffer.
     if !buffer.bytes.is_empty() {
-        let uri = (form == Form::Separate).then(|| format!("{}.bin", escaped(stem)));
+        let uri = (format == Format::Gltf).then(|| format!("{}.bin", escaped(stem)));
         root.buffers.push(gltf_json::Buffer {
             byte_length: USize64::from(buffer.bytes.len()),
             name: None,
@@ -89,16 +80,14 @@ pub(super) fn written(
     }
     // The text comes last in the list: the main file is written last.
     let text = root.to_vec().map_err(|error| error.to_string())?;
-    let mut files = Vec::new();
-    match form {
-        Form::Separate => {
-            if !buffer.bytes.is_empty() {
-                files.push((format!("{stem}.bin"), buffer.bytes));
-            }
-            files.push((format!("{stem}.gltf"), text));
+    let files = match format {
+        Format::Glb => vec![(format!("{stem}.glb"), binary(text, buffer.bytes)?)],
+        _ => {
+            let bytes = Some((format!("{stem}.bin"), buffer.bytes));
+            let bytes = bytes.filter(|(_, bytes)| !bytes.is_empty());
+            bytes.into_iter().chain([(format!("{stem}.gltf"), text)]).collect()
         }
-        Form::Binary => files.push((format!("{stem}.glb"), binary(text, buffer.bytes)?)),
-    }
+    };
     Ok(Content { files, notes })
 }
 

@@ -43,24 +43,28 @@ impl Buffer {
         &mut self,
         root: &mut Root,
         all: &[[f32; N]],
-        limits: Limits,
     ) -> Index<Accessor> {
         let bytes = all.iter().flatten().flat_map(|x| x.to_le_bytes());
         let view = self.view(root, bytes, Some(Target::ArrayBuffer));
-        let [min, max] = match limits {
-            Limits::Told => [f32::min, f32::max].map(|of| {
-                let limit =
-                    all.iter().copied().reduce(|a, b| std::array::from_fn(|i| of(a[i], b[i])));
-                limit.map(|limit| Value::from(limit.to_vec()))
-            }),
-            Limits::LeftOut => [None, None],
-        };
         let kind = match N {
             2 => Type::Vec2,
             3 => Type::Vec3,
             _ => Type::Vec4,
         };
-        root.push(Accessor { min, max, ..accessor(view, all.len(), ComponentType::F32, kind) })
+        root.push(accessor(view, all.len(), ComponentType::F32, kind))
+    }
+
+    /// Appends positions, with their least and greatest values, which glTF requires.
+    pub(super) fn positions(&mut self, root: &mut Root, all: &[[f32; 3]]) -> Index<Accessor> {
+        let index = self.floats(root, all);
+        let [min, max] = [f32::min, f32::max].map(|of| {
+            let limit = all.iter().copied().reduce(|a, b| std::array::from_fn(|i| of(a[i], b[i])));
+            limit.map(|limit| Value::from(limit.to_vec()))
+        });
+        if let Some(accessor) = root.accessors.last_mut() {
+            (accessor.min, accessor.max) = (min, max);
+        }
+        index
     }
 
     /// Appends indices.
@@ -69,13 +73,6 @@ impl Buffer {
         let view = self.view(root, bytes, Some(Target::ElementArrayBuffer));
         root.push(accessor(view, all.len(), ComponentType::U32, Type::Scalar))
     }
-}
-
-/// Whether an accessor states its least and greatest values, which glTF requires for positions.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Limits {
-    Told,
-    LeftOut,
 }
 
 fn accessor(view: Index<View>, count: usize, component: ComponentType, kind: Type) -> Accessor {

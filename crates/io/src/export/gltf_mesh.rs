@@ -12,7 +12,7 @@ use gltf_json::scene::{Node, UnitQuaternion};
 use gltf_json::validation::Checked;
 
 use super::gltf::Writer;
-use super::gltf_buffer::{Limits, Vertex, Vertices, columns, is_single, single, single3};
+use super::gltf_buffer::{Vertex, Vertices, columns, is_single, single, single3};
 use super::gltf_surface::linear;
 use super::gltf_texture::{Layout, layouts};
 use super::look::{has_colors, polygons};
@@ -193,31 +193,31 @@ impl Writer<'_> {
         let mut put = |semantic, accessor| attributes.insert(Checked::Valid(semantic), accessor);
         let points = || vertices.all.iter().map(|it| mesh.points()[it.point as usize]);
         let positions: Vec<_> = points().map(|point| placed(baked, mesh, point.position)).collect();
-        put(Semantic::Positions, buffer.floats(root, &positions, Limits::Told));
+        put(Semantic::Positions, buffer.positions(root, &positions));
         let normals: Vec<_> = points().map(|point| turned(baked, point.normal)).collect();
-        put(Semantic::Normals, buffer.floats(root, &normals, Limits::LeftOut));
+        put(Semantic::Normals, buffer.floats(root, &normals));
         if is_bumpy {
             let tangent = |(vertex, normal): (&Vertex, &[f32; 3])| {
                 tangent(baked, vertex.tangent.map(f32::from_bits), *normal)
             };
             let tangents: Vec<_> = vertices.all.iter().zip(&normals).map(tangent).collect();
-            put(Semantic::Tangents, buffer.floats(root, &tangents, Limits::LeftOut));
+            put(Semantic::Tangents, buffer.floats(root, &tangents));
         }
         let uv = |it: &Vertex| mesh.uvs().get(it.uv as usize).copied().unwrap_or_default();
         for (i, layout) in (0..).zip(&layouts) {
             let uvs: Vec<_> = vertices.all.iter().map(|it| layout.laid(uv(it))).collect();
-            put(Semantic::TexCoords(i), buffer.floats(root, &uvs, Limits::LeftOut));
+            put(Semantic::TexCoords(i), buffer.floats(root, &uvs));
         }
         // Unused texture coordinates are kept for other programs.
         if layouts.is_empty() && vertices.all.iter().any(|it| it.uv != NONE) {
             let plain = Layout::default();
             let uvs: Vec<_> = vertices.all.iter().map(|it| plain.laid(uv(it))).collect();
-            put(Semantic::TexCoords(0), buffer.floats(root, &uvs, Limits::LeftOut));
+            put(Semantic::TexCoords(0), buffer.floats(root, &uvs));
         }
         if has_colors(object) {
             let color = |i: u32| mesh.colors()[i as usize].map(|s| linear(f64::from(s)));
             let colors: Vec<_> = points().map(|point| color(point.position)).collect();
-            put(Semantic::Colors(0), buffer.floats(root, &colors, Limits::LeftOut));
+            put(Semantic::Colors(0), buffer.floats(root, &colors));
         }
         let indices = buffer.indices(root, &indices);
         Some(Primitive {

@@ -8,7 +8,7 @@ use super::gltf::Writer;
 use super::gltf_buffer::single;
 use super::gltf_texture::{Cover, Infos, Textures};
 use super::look::Look;
-use marraztu_core::base::Shared;
+use marraztu_core::base::{Shared, color};
 use marraztu_core::scene::{MapKind, Texture};
 
 impl Writer<'_> {
@@ -68,7 +68,7 @@ fn surface(look: &Look, infos: Infos) -> gltf_json::Material {
     };
     // glTF limits emission to 1; brighter light goes into the strength extension.
     let strength = strength(look);
-    let emissive = look.material.emission.map(|x| unclamped(x) / strength.unwrap_or(1.0));
+    let emissive = look.material.emission.map(|x| color::linear(x) / strength.unwrap_or(1.0));
     let extensions = extensions::material::Material {
         unlit: look.unlit.then(extensions::material::Unlit::default),
         emissive_strength: strength.map(|strength| extensions::material::EmissiveStrength {
@@ -100,7 +100,7 @@ fn surface(look: &Look, infos: Infos) -> gltf_json::Material {
 
 /// Returns the brightness of an emission brighter than white, as a multiple of white.
 fn strength(look: &Look) -> Option<f64> {
-    let most = look.material.emission.into_iter().map(unclamped).fold(0.0, f64::max);
+    let most = look.material.emission.into_iter().map(color::linear).fold(0.0, f64::max);
     (most > 1.0 && !look.unlit).then_some(most)
 }
 
@@ -116,11 +116,5 @@ fn factor(x: f64) -> f32 {
 
 /// Converts a display value to linear light (IEC 61966-2-1).
 pub(super) fn linear(display: f64) -> f32 {
-    single(unclamped(display.min(1.0)))
-}
-
-/// Converts like [`linear`], but keeps values brighter than white.
-fn unclamped(display: f64) -> f64 {
-    let s = display.max(0.0);
-    if s <= 0.04045 { s / 12.92 } else { libm::pow((s + 0.055) / 1.055, 2.4) }
+    single(color::linear(display.min(1.0)))
 }

@@ -101,8 +101,7 @@ pub fn export(
     let scene = &scene;
     let content = match format {
         Format::Obj => obj::written(&stem, scene, view),
-        Format::Gltf => gltf::written(&stem, scene, view, gltf::Form::Separate),
-        Format::Glb => gltf::written(&stem, scene, view, gltf::Form::Binary),
+        Format::Gltf | Format::Glb => gltf::written(&stem, scene, view, format),
     };
     let Content { files, notes } = content.map_err(|reason| SaveError::new(path, reason))?;
     let notes = left_out.into_iter().chain(notes).collect();

@@ -2,10 +2,8 @@
 
 use marraztu_core::scene::{Command, Item, Object, ObjectId, Scene};
 
-/// Returns the scene without its placeholders, with a note about each.
-///
-/// # Errors
-/// The reason, if the scene is not valid.
+/// Returns the scene without its placeholders, with a note about each. Fails with the reason if the
+/// scene is not valid.
 pub(super) fn without(scene: &Scene) -> Result<(Scene, Vec<String>), String> {
     let (mut scene, mut notes) = (scene.clone(), Vec::new());
     let lost = |object: &Object| object.missing_files().next().is_some();

@@ -24,7 +24,6 @@ pub struct Abandoned {
 
 impl Abandoned {
     /// Finds all abandoned work, the latest first. Locks without work are removed.
-    #[must_use]
     pub fn all(folders: &OwnFolders) -> Vec<Self> {
         let folder = &folders.state;
         if !folder.is_dir() {
@@ -55,7 +54,6 @@ impl Abandoned {
     }
 
     /// Returns the scene file with the work.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.slot.work
     }

@@ -32,7 +32,6 @@ pub struct Discarded {
 
 impl Discarded {
     /// Finds all discarded work, the latest first. Work older than 30 days is deleted.
-    #[must_use]
     pub fn all(folders: &OwnFolders) -> Vec<Self> {
         Self::all_at(folders, SystemTime::now())
     }
@@ -69,16 +68,12 @@ impl Discarded {
     }
 
     /// Returns the scene file with the work.
-    #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 }
 
-/// Moves a file of work aside.
-///
-/// # Errors
-/// If it cannot be renamed; the file then keeps its name.
+/// Moves a file of work aside. Fails if it cannot be renamed; the file then keeps its name.
 pub(super) fn set_aside(work: &Path) -> std::io::Result<()> {
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_secs();
     let name = work.file_name().unwrap_or(work.as_os_str()).to_string_lossy();

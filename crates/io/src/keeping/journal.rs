@@ -177,7 +177,6 @@ impl Journal {
     }
 
     /// Returns the reason why the last state could not be written, once.
-    #[must_use]
     pub fn fault(&self) -> Option<String> {
         self.shared.desk().fault.take()
     }

@@ -39,7 +39,6 @@ pub struct OwnFolders {
 
 impl OwnFolders {
     /// Returns the folders of this user; `None` if the system does not define them.
-    #[must_use]
     pub fn of_user() -> Option<Self> {
         let folders = directories::ProjectDirs::from("", "", "marraztu")?;
         let state = folders.state_dir().unwrap_or_else(|| folders.data_local_dir());
@@ -47,7 +46,6 @@ impl OwnFolders {
     }
 
     /// Returns both folders inside one.
-    #[must_use]
     pub fn within(folder: &Path) -> Self {
         Self { state: folder.join("state"), config: folder.join("config") }
     }

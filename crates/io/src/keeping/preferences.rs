@@ -112,7 +112,6 @@ impl Preferences {
     pub const WINDOW: [f32; 2] = [1280.0, 800.0];
 
     /// Loads the preferences, with a message if the file could not be parsed and was renamed.
-    #[must_use]
     pub fn load(folders: &OwnFolders) -> (Self, Option<String>) {
         let path = file(folders);
         let text = match fs::read(&path) {

@@ -328,44 +328,38 @@ impl Statements {
     fn read(&mut self, line: &Line<'_>, findings: &mut Findings) {
         let (keyword, rest) = line.statement();
         let plain = keyword.to_ascii_lowercase();
-        let mut read = true;
+        let mut note = |kind| findings.add(kind, &decode(keyword), Some(line.number));
+        let mut is_read = true;
         match &plain[..] {
-            b"ka" => read = set(&mut self.ambient, statement::ambient(rest)),
-            b"kd" => read = set(&mut self.diffuse, statement::diffuse(rest)),
-            b"ks" => read = set(&mut self.specular, statement::specular(rest)),
-            b"ns" => read = set(&mut self.exponent, statement::exponent(rest)),
+            b"ka" => is_read = set(&mut self.ambient, statement::color(rest)),
+            b"kd" => is_read = set(&mut self.diffuse, statement::color(rest)),
+            b"ks" => is_read = set(&mut self.specular, statement::color(rest)),
+            b"ke" => is_read = set(&mut self.emission, statement::color(rest)),
+            b"ns" => is_read = set(&mut self.exponent, statement::scalar(rest)),
             b"d" => {
                 // `d -halo x` fades towards the centre; only x is used.
                 let rest = rest.strip_prefix(b"-halo").unwrap_or(rest);
-                read = set(&mut self.opacity, statement::opacity(rest));
+                is_read = set(&mut self.opacity, statement::scalar(rest));
             }
-            b"tr" => read = set(&mut self.transparency, statement::opacity(rest)),
+            b"tr" => is_read = set(&mut self.transparency, statement::scalar(rest)),
             b"illum" => {
-                read = set(&mut self.illumination, statement::exponent(rest));
+                is_read = set(&mut self.illumination, statement::scalar(rest));
                 self.keep_model();
             }
-            b"ke" => read = set(&mut self.emission, statement::emission(rest)),
             b"bsdf" if words(rest).eq([b"pbr"]) => self.is_packed = true,
-            b"map_kd" => {
-                let map = map(rest).map(|map| (line.number, map));
-                read = set(&mut self.map, map);
-            }
-            b"disp" | b"decal" | b"refl" => {
-                findings.add(FindingKind::MapUnused, &decode(keyword), Some(line.number));
-            }
+            b"map_kd" => is_read = set(&mut self.map, map(rest).map(|map| (line.number, map))),
             b"map_aat" => {}
             _ if let Some(kind) = kind_of(&plain) => match map(rest) {
                 Some(map) => _ = self.maps.insert(kind, (line.number, map)),
-                None => read = false,
+                None => is_read = false,
             },
-            _ if plain.starts_with(b"map_") => {
-                findings.add(FindingKind::MapUnused, &decode(keyword), Some(line.number));
-            }
+            b"disp" | b"decal" | b"refl" => note(FindingKind::MapUnused),
+            _ if plain.starts_with(b"map_") => note(FindingKind::MapUnused),
             _ if self.keep_undrawn(keyword, rest) => {}
-            _ => findings.add(FindingKind::Unknown, &decode(keyword), Some(line.number)),
+            _ => note(FindingKind::Unknown),
         }
-        if !read {
-            findings.add(FindingKind::MtlNumber, &decode(keyword), Some(line.number));
+        if !is_read {
+            note(FindingKind::MtlNumber);
         }
     }
 

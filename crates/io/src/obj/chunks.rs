@@ -43,10 +43,8 @@ impl<'a, R: Read> Chunks<'a, R> {
         Self { source, file, sizes, rest: Vec::new(), taken: 0, read: 0, ended: false }
     }
 
-    /// Replaces `chunk` by the next chunk and returns its index, from 0.
-    ///
-    /// # Errors
-    /// If the text cannot be read, or if it or a statement is too long.
+    /// Replaces `chunk` by the next chunk and returns its index, from 0. Fails if the text cannot
+    /// be read, or if it or a statement is too long.
     pub(super) fn take(&mut self, chunk: &mut Vec<u8>) -> Result<Option<usize>, LoadError> {
         chunk.clear();
         chunk.append(&mut self.rest);

@@ -11,12 +11,12 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use rayon::prelude::*;
 
 use super::chunks::{Chunks, Sizes};
-use super::faces::INHERITED;
+use super::faces::{Faces, INHERITED};
 use super::lines::{Lines, unmarked};
 use super::parts::{NamedPart, Parts};
 use super::piece::{Counts, Piece, Stop};
 use super::rows::{NO_COLOR, Rows};
-use super::sound::{Before, SoundFaces, SoundPiece, Totals};
+use super::sound::{Before, SoundPiece, Totals};
 use super::{EMPTY, no_obj};
 use crate::error::LoadError;
 use crate::findings::{BYTES_ABOVE, FindingKind, Findings};
@@ -48,7 +48,7 @@ pub(super) struct Content {
     pub(super) vertices: u32,
     /// The first unreadable vertex, with the reason.
     pub(super) refused: Option<(u32, String)>,
-    pub(super) faces: SoundFaces,
+    pub(super) faces: Faces,
     pub(super) parts: Vec<NamedPart>,
     /// Whether any statement `s` sets a smoothing group.
     pub(super) has_smoothing: bool,
@@ -57,11 +57,9 @@ pub(super) struct Content {
     pub(super) edge_color: Option<Color>,
 }
 
-/// Parses all statements of a text. `size` is its size in bytes, or an estimate.
-///
-/// # Errors
-/// If the text cannot be read, is not an OBJ file or is too long, if a line is invalid, or if the
-/// work is cancelled.
+/// Parses all statements of a text. `size` is its size in bytes, or an estimate. Fails if the text
+/// cannot be read, is not an OBJ file or is too long, if a line is invalid, or if the work is
+/// cancelled.
 pub(super) fn content(
     text: impl Read + Send,
     size: usize,
@@ -253,7 +251,7 @@ fn joined(
     let totals = [vertices, uv_totals, normal_totals];
     let sound = |(piece, before): (Piece, Before)| SoundPiece::of(piece.faces, &totals, &before);
     let sound: Vec<SoundPiece> = pieces.into_par_iter().zip(befores).map(sound).collect();
-    let faces = SoundFaces::of(sound, findings);
+    let faces = SoundPiece::joined(sound, findings);
     let parts = parts.list;
     let vertices = count;
     Ok(Content {

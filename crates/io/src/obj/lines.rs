@@ -106,45 +106,14 @@ impl<'a> Lines<'a> {
         let end = memchr2(b'\n', b'\r', rest).unwrap_or(rest.len());
         let (word, arguments) = split_word(trimmed(&rest[..end]));
         let is_comment = word.starts_with(b"#");
-        is_comment || !arguments.is_empty() && KEYWORDS.contains(&word)
+        let is_keyword = || KEYWORDS.split(' ').any(|keyword| keyword.as_bytes() == word);
+        is_comment || !arguments.is_empty() && is_keyword()
     }
 }
 
 /// The keywords that end a continued line.
-const KEYWORDS: [&[u8]; 32] = [
-    b"v",
-    b"vt",
-    b"vn",
-    b"vp",
-    b"f",
-    b"l",
-    b"p",
-    b"g",
-    b"o",
-    b"s",
-    b"usemtl",
-    b"mtllib",
-    b"newmtl",
-    b"Ka",
-    b"Kd",
-    b"Ks",
-    b"Ke",
-    b"Ns",
-    b"Ni",
-    b"Tr",
-    b"Tf",
-    b"illum",
-    b"map_Ka",
-    b"map_Kd",
-    b"map_Ks",
-    b"map_Ke",
-    b"map_Ns",
-    b"map_d",
-    b"map_Bump",
-    b"map_bump",
-    b"bump",
-    b"norm",
-];
+const KEYWORDS: &str = "v vt vn vp f l p g o s usemtl mtllib newmtl Ka Kd Ks Ke Ns Ni Tr Tf illum \
+    map_Ka map_Kd map_Ks map_Ke map_Ns map_d map_Bump map_bump bump norm";
 
 /// Returns whether a control character counts as a blank.
 const fn is_odd_blank(byte: u8) -> bool {

@@ -39,14 +39,14 @@ use self::sound::FaceRuns;
 use super::error::{LoadError, short_name, shown};
 use super::findings::{Finding, FindingKind, Findings, joined};
 use super::mtl::Library;
-use super::packed::{Unpacked, unpacked_name};
+use super::packed::{Unpacked, model_name, unpacked, unpacked_name};
 use super::progress::Progress;
 use super::read;
 use super::stl::{self, is_stl};
 use super::texture::{Pictures, texture_endings};
 use marraztu_core::scene::{
-    ClosedBodies, CornerLists, FileMaterial, LoadOptions, Mesh, MeshSource, Model, Part, Scale,
-    Smoothing, Texture, UpAxis, Winding, dvec3, newell, split_positions,
+    CornerLists, FileMaterial, LoadOptions, Mesh, MeshSource, Model, Part, Scale, Smoothing,
+    Texture, UpAxis, Winding, dvec3, newell, split_positions,
 };
 
 /// The error for a file without content.
@@ -81,10 +81,14 @@ pub(super) fn load_with(
     pictures: &mut Pictures,
     progress: &Progress,
 ) -> Result<Loaded, LoadError> {
-    if is_stl(path) {
-        return stl::load(path, options, progress);
-    }
     let file = shown(path);
+    // An absolute path stays valid when the current folder changes.
+    let source = Some(std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned()));
+    if is_stl(path) {
+        let Loaded { model, findings } =
+            stl::parse(&unpacked(path, &file)?, &file, options, progress)?;
+        return Ok(Loaded { model: Model { source, ..model }, findings });
+    }
     let (text, size) = read::open(path, MOST_BYTES)?;
     let mut findings = Findings::new(&file);
     let part = progress.part(0.0, 0.6);
@@ -98,10 +102,8 @@ pub(super) fn load_with(
     let missing = read_libraries(&mut library, &content, folder, &mut findings);
     own_library(&mut library, &content, path, missing, &mut findings);
     let progress = progress.part(0.6, 1.0);
-    let mut loaded = model(content, &file, library, options, findings, &progress)?;
-    // An absolute path stays valid when the current folder changes.
-    loaded.model.source = Some(std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned()));
-    Ok(loaded)
+    let Loaded { model, findings } = model(content, &file, library, options, findings, &progress)?;
+    Ok(Loaded { model: Model { source, ..model }, findings })
 }
 
 /// Parses the text of an OBJ file, or an STL file. MTL files are searched for in `folder`, if
@@ -159,8 +161,8 @@ fn model(
 ) -> Result<Loaded, LoadError> {
     let parts = named_parts(&content.parts, &library, &mut findings);
     let used = parts.iter().filter_map(|part| part.material).collect();
-    if library.count() > 0 && content.parts.iter().all(|part| part.names.material.is_none()) {
-        findings.note_count(FindingKind::MaterialsUnused, library.count());
+    if content.parts.iter().all(|part| part.names.material.is_none()) {
+        findings.note_all(FindingKind::MaterialsUnused, library.count(), None);
     }
     // Finishing the library decides how `Tr 1` is read, which depends on the used materials.
     let companions = library.files();
@@ -180,17 +182,14 @@ fn model(
     }
     note_crossings(&mesh, &faces, &mut findings);
     note_orientation(&mesh, &faces, &mut findings);
-    if !mesh.unused_vertices().is_empty() && mesh.polygon_count() > 0 {
-        let count = mesh.unused_vertices().len();
-        findings.note_count(FindingKind::VertexUnused, count);
+    if mesh.polygon_count() > 0 {
+        findings.note_all(FindingKind::VertexUnused, mesh.unused_vertices().len(), None);
     }
     note_unmapped(&mesh, &materials, &mut findings);
     progress.reached(1, 1)?;
 
-    let name = Path::new(unpacked_name(file).unwrap_or(file)).file_stem().unwrap_or_default();
-    let name = name.to_string_lossy().into_owned();
-    let options = *options;
-    let model = Model { name, source: None, companions, options, mesh, materials, edge_color };
+    let model = Model::of_mesh(&model_name(file), mesh);
+    let model = Model { companions, options: *options, materials, edge_color, ..model };
     let findings = findings.into_list().into_iter().chain(of_materials).collect();
     Ok(Loaded { model, findings: joined(findings) })
 }
@@ -295,8 +294,7 @@ fn own_library(
 ) {
     let folder = path.parent().unwrap_or(Path::new(""));
     let shown = shown(path);
-    let stem = Path::new(unpacked_name(&shown).unwrap_or(&shown)).file_stem().unwrap_or_default();
-    let stem = stem.to_string_lossy();
+    let stem = model_name(&shown);
     let mut own = |ending: &str| library.locator.locate(folder, &format!("{stem}.{ending}"));
     let has_library = !content.libraries.is_empty() && missing.is_empty();
     // Without such an MTL file, a picture of that name is worth a note.
@@ -424,15 +422,10 @@ fn note_crossings(mesh: &Mesh, faces: &FaceRuns, findings: &mut Findings) {
 
 /// Notes bodies that are inside out, and faces with normals on their back side.
 fn note_orientation(mesh: &Mesh, faces: &FaceRuns, findings: &mut Findings) {
-    let ClosedBodies { all, inside_out } = mesh.closed_bodies();
-    let kind = match inside_out == all {
-        true => FindingKind::InsideOut,
-        false => FindingKind::InsideOutPartly,
-    };
-    findings.note_count(kind, inside_out);
+    findings.note_inside_out(mesh);
     let against = mesh.polygons_against_normals();
     if let Some(first) = against.first() {
-        findings.note_all(FindingKind::NormalsAgainst, against.len(), faces.line(*first));
+        findings.note_all(FindingKind::NormalsAgainst, against.len(), Some(faces.line(*first)));
     }
 }
 

@@ -62,7 +62,7 @@ impl Piece {
         }
         self.lines = lines.number();
         let (count, first) = lines.control();
-        self.findings.note_all(FindingKind::ControlCharacter, count, first);
+        self.findings.note_all(FindingKind::ControlCharacter, count, Some(first));
         Ok(())
     }
 

@@ -29,15 +29,6 @@ impl Totals {
     }
 }
 
-/// Faces with valid indices into the kept rows, or [`NONE`].
-#[derive(Debug)]
-pub(super) struct SoundFaces {
-    pub(super) corners: CornerLists,
-    pub(super) runs: Vec<Run>,
-    /// The first unusable face, with the reason.
-    pub(super) refused: Option<(u32, String)>,
-}
-
 /// The state at the beginning of a chunk.
 #[derive(Debug)]
 pub(super) struct Before {
@@ -198,12 +189,10 @@ impl SoundPiece {
             self.findings.note(kind, of.line);
         }
     }
-}
 
-impl SoundFaces {
-    /// Joins the faces of all chunks.
-    pub(super) fn of(pieces: Vec<SoundPiece>, findings: &mut Findings) -> Self {
-        let mut all = Self { corners: CornerLists::default(), runs: Vec::new(), refused: None };
+    /// Joins the faces of all chunks. Their indices are valid for the kept rows, or [`NONE`].
+    pub(super) fn joined(pieces: Vec<Self>, findings: &mut Findings) -> Faces {
+        let mut all = Faces::default();
         let mut without = [Without::default(); 2];
         let [mut positions, mut uvs, mut normals] = [const { Vec::new() }; 3];
         for piece in pieces {
@@ -229,7 +218,7 @@ impl SoundFaces {
         let kinds = [FindingKind::UvMixed, FindingKind::NormalMixed];
         for (without, kind) in without.into_iter().zip(kinds) {
             if without.corners < all.corners.positions.len() {
-                findings.note_all(kind, without.faces, without.first);
+                findings.note_all(kind, without.faces, Some(without.first));
             }
         }
         all

@@ -12,10 +12,7 @@ pub(super) fn white() -> [u8; 3] {
     [255; 3]
 }
 
-/// Checks that all numbers are finite.
-///
-/// # Errors
-/// The reason, if one is infinite or NaN.
+/// Checks that all numbers are finite. Fails with the reason if one is infinite or NaN.
 pub(super) fn finite(what: &str, numbers: &[f64]) -> Result<(), String> {
     if numbers.iter().all(|x| x.is_finite()) {
         Ok(())

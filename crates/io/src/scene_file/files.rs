@@ -41,7 +41,6 @@ pub struct Known {
 
 impl Known {
     /// Collects the models and textures of a scene.
-    #[must_use]
     pub fn of(scene: &Scene) -> Self {
         let objects = || scene.objects.iter().map(|(_, object)| object);
         let cameras = scene.cameras.iter().map(|(_, camera)| camera.model.clone());
@@ -222,10 +221,7 @@ impl Files {
     }
 }
 
-/// Returns the path of a model and its load options.
-///
-/// # Errors
-/// If one of the options is invalid.
+/// Returns the path of a model and its load options. Fails if one of the options is invalid.
 fn read_options<'a>(
     model: &'a FileModel,
     name: &str,

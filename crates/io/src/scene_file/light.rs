@@ -55,8 +55,7 @@ pub(super) enum FileOwner {
 }
 
 pub(super) fn file_light(id: u32, light: &Light) -> FileLight {
-    let Light { name, slot, on, color, attenuation, shadows, kind } = light;
-    let kind = match kind {
+    let kind = match &light.kind {
         LightKind::Ambient => FileLightKind::Ambient,
         LightKind::Sun { direction } => {
             FileLightKind::Sun { direction: direction.now().to_array() }
@@ -70,9 +69,9 @@ pub(super) fn file_light(id: u32, light: &Light) -> FileLight {
             exponent: *exponent,
         },
     };
-    let (slot, on, color, attenuation) = (*slot, *on, color.0, *attenuation);
-    let shadows = *shadows;
-    FileLight { id, name: name.clone(), slot, on, color, attenuation, shadows, kind }
+    let (name, Color(color)) = (light.name.clone(), light.color);
+    let Light { slot, on, attenuation, shadows, .. } = *light;
+    FileLight { id, name, slot, on, color, attenuation, shadows, kind }
 }
 
 pub(super) fn file_owner(owner: &SpotOwner) -> FileOwner {

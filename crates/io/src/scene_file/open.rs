@@ -25,10 +25,7 @@ const MOST_ITEMS: usize = 10_000;
 /// takes.
 const MOST_HIDDEN: usize = 1_000_000;
 
-/// Checks that no kind has too many items.
-///
-/// # Errors
-/// The reason, if there are too many.
+/// Checks that no kind has too many items. Fails with the reason if there are too many.
 pub(super) fn check_counts(file: &FileScene) -> Result<(), String> {
     let counts = [
         ("objects", file.objects.len()),
@@ -51,10 +48,7 @@ pub(super) trait Needs {
     fn texture(&self, texture: &FileTexture) -> Shared<Texture>;
 }
 
-/// Builds the scene and the view of a file.
-///
-/// # Errors
-/// The reason, if the scene is invalid.
+/// Builds the scene and the view of a file. Fails with the reason if the scene is invalid.
 pub(super) fn scene(
     file: &FileScene,
     needs: &dyn Needs,
@@ -144,10 +138,7 @@ fn note_missing_owners(scene: &Scene, findings: &mut Findings) {
     }
 }
 
-/// Checks a material.
-///
-/// # Errors
-/// The reason, if one of its numbers is invalid.
+/// Checks a material. Fails with the reason if one of its numbers is invalid.
 pub(super) fn read_material(material: &MaterialChoice) -> Result<MaterialChoice, String> {
     if let MaterialChoice::Own(own) = material {
         let colors = [own.ambient, own.diffuse, own.specular].concat();

@@ -1,7 +1,7 @@
 //! Writes the text of a scene file.
 //!
-//! Every type of the scene is destructured: the compiler then reports new fields that are missing
-//! here.
+//! Reading builds whole items (`open`), so the compiler reports new fields that are missing in the
+//! file.
 
 use std::path::Path;
 
@@ -20,10 +20,8 @@ use marraztu_core::scene::{
 };
 
 /// Converts a scene with its view and settings to the types of the file. `folder` is the file's
-/// folder, absolute.
-///
-/// # Errors
-/// The reason, if a model has no file, or a path or a number cannot be written.
+/// folder, absolute. Fails with the reason if a model has no file, or a path or a number cannot be
+/// written.
 pub(super) fn file_scene(
     scene: &Scene,
     view: &View,
@@ -31,18 +29,15 @@ pub(super) fn file_scene(
     settings: &Settings,
     folder: &Path,
 ) -> Result<FileScene, String> {
-    let Scene { objects, cameras, lights, background, next_id, locked: _ } = scene;
-    let objects: Result<_, String> =
-        objects.iter().map(|(id, item)| file_object(id.0, item, folder)).collect();
-    let cameras: Result<_, String> =
-        cameras.iter().map(|(id, item)| file_camera(id.0, item, folder)).collect();
+    let objects = scene.objects.iter().map(|(id, item)| file_object(id.0, item, folder));
+    let cameras = scene.cameras.iter().map(|(id, item)| file_camera(id.0, item, folder));
     Ok(FileScene {
         version: VERSION,
-        background: background.0,
-        next_id: *next_id,
-        objects: objects?,
-        cameras: cameras?,
-        lights: lights.iter().map(|(id, item)| file_light(id.0, item)).collect(),
+        background: scene.background.0,
+        next_id: scene.next_id,
+        objects: objects.collect::<Result<_, _>>()?,
+        cameras: cameras.collect::<Result<_, _>>()?,
+        lights: scene.lights.iter().map(|(id, item)| file_light(id.0, item)).collect(),
         locked: FileLocked::of(scene),
         view: FileView::of(view, window),
         settings: *settings,
@@ -74,40 +69,25 @@ fn file_path(path: &Path, folder: &Path) -> Result<String, String> {
 }
 
 pub(super) fn file_object(id: u32, object: &Object, folder: &Path) -> Result<FileObject, String> {
-    let Object {
-        name,
-        visible,
-        model,
-        hidden_parts,
-        placement,
-        spin,
-        material,
-        surface,
-        texture,
-        tint,
-        opacity,
-        sides,
-        file_normals,
-        edge_color,
-    } = object;
-    let texture = texture.as_ref().map(|texture| file_texture(texture, folder)).transpose()?;
+    let texture = object.texture.as_ref();
+    let texture = texture.map(|texture| file_texture(texture, folder)).transpose()?;
     Ok(FileObject {
         id,
-        name: name.clone(),
-        visible: *visible,
-        model: file_model(model, folder)?,
-        hidden_parts: Numbers::of(hidden_parts),
-        placement: placement.now().to_cols_array_2d(),
-        spin: *spin,
-        material: material.clone(),
-        surface: *surface,
+        name: object.name.clone(),
+        visible: object.visible,
+        model: file_model(&object.model, folder)?,
+        hidden_parts: Numbers::of(&object.hidden_parts),
+        placement: object.placement.now().to_cols_array_2d(),
+        spin: object.spin,
+        material: object.material.clone(),
+        surface: object.surface,
         texture,
-        tint: tint.0,
-        opacity: *opacity,
-        sides: Some(*sides),
+        tint: object.tint.0,
+        opacity: object.opacity,
+        sides: Some(object.sides),
         two_sided: None,
-        file_normals: *file_normals,
-        edge_color: edge_color.0,
+        file_normals: object.file_normals,
+        edge_color: object.edge_color.0,
     })
 }
 
@@ -119,20 +99,19 @@ pub(super) fn file_texture(texture: &Texture, folder: &Path) -> Result<FileTextu
 }
 
 pub(super) fn file_camera(id: u32, camera: &Camera, folder: &Path) -> Result<FileCamera, String> {
-    let Camera { name, visible, model, material, pose, lens } = camera;
-    let Pose { eye, axes, mode } = *pose.now();
+    let Pose { eye, axes, mode } = *camera.pose.now();
     Ok(FileCamera {
         id,
-        name: name.clone(),
-        visible: *visible,
-        model: file_model(model, folder)?,
-        material: material.clone(),
+        name: camera.name.clone(),
+        visible: camera.visible,
+        model: file_model(&camera.model, folder)?,
+        material: camera.material.clone(),
         eye: eye.to_array(),
         axes: axes.to_cols_array_2d(),
         mode: match mode {
             CameraMode::Fly => FileMode::Fly,
             CameraMode::Analysis { target } => FileMode::Analysis(target.0),
         },
-        lens: *lens,
+        lens: camera.lens,
     })
 }

@@ -1,6 +1,6 @@
 //! The view in scene files: its format, and conversions in both directions.
 //!
-//! Each type is destructured: the compiler then reports new fields that are missing here.
+//! Reading builds a whole [`View`], so the compiler reports new fields that are missing here.
 
 use serde::{Deserialize, Serialize};
 
@@ -57,70 +57,43 @@ pub(super) struct FilePolygons {
 impl FileView {
     /// Converts a view and the state of its window.
     pub(super) fn of(view: &View, window: &WindowState) -> Self {
-        let View {
-            subject,
-            object,
-            camera,
-            light,
-            transformation,
-            frame,
-            steps,
-            observer,
-            projection,
-            fill,
-            edges_over_fill,
-            polygons,
-            polygons_stay,
-            only_selected,
-            normals,
-            back_faces,
-            face_normals,
-            vertex_normals,
-            normal_length,
-            wide_lines,
-            marks,
-            exposure,
-            time,
-        } = view;
-        let WindowState { coarse_while_moving, panels } = window;
-        let polygons = polygons
+        let polygons = view
+            .polygons
             .as_ref()
             .map(|mode| FilePolygons { current: mode.current, shown: Numbers::of(&mode.shown) });
         Self {
-            subject: *subject,
-            object: object.map(|id| id.0),
-            camera: camera.0,
-            light: light.map(|id| id.0),
-            transformation: *transformation,
-            frame: *frame,
-            steps: *steps,
-            observer: *observer,
-            projection: *projection,
-            fill: *fill,
-            edges_over_fill: *edges_over_fill,
+            subject: view.subject,
+            object: view.object.map(|id| id.0),
+            camera: view.camera.0,
+            light: view.light.map(|id| id.0),
+            transformation: view.transformation,
+            frame: view.frame,
+            steps: view.steps,
+            observer: view.observer,
+            projection: view.projection,
+            fill: view.fill,
+            edges_over_fill: view.edges_over_fill,
             polygons,
-            polygons_stay: *polygons_stay,
-            only_selected: *only_selected,
-            normals: *normals,
-            back_faces: *back_faces,
-            face_normals: *face_normals,
-            vertex_normals: *vertex_normals,
-            normal_length: *normal_length,
-            wide_lines: *wide_lines,
-            marks: *marks,
-            coarse_while_moving: *coarse_while_moving,
-            exposure: *exposure,
-            time: *time,
-            panels: panels.clone(),
+            polygons_stay: view.polygons_stay,
+            only_selected: view.only_selected,
+            normals: view.normals,
+            back_faces: view.back_faces,
+            face_normals: view.face_normals,
+            vertex_normals: view.vertex_normals,
+            normal_length: view.normal_length,
+            wide_lines: view.wide_lines,
+            marks: view.marks,
+            coarse_while_moving: window.coarse_while_moving,
+            exposure: view.exposure,
+            time: view.time,
+            panels: window.panels.clone(),
         }
     }
-}
 
-impl FileView {
     /// Returns the state of the window.
     pub(super) fn window(&self) -> WindowState {
-        let Self { coarse_while_moving, panels, .. } = self;
-        WindowState { coarse_while_moving: *coarse_while_moving, panels: panels.clone() }
+        let panels = self.panels.clone();
+        WindowState { coarse_while_moving: self.coarse_while_moving, panels }
     }
 }
 
@@ -136,10 +109,7 @@ fn is_zero(x: &f64) -> bool {
     *x == 0.0
 }
 
-/// Reads the view of a scene.
-///
-/// # Errors
-/// The reason, if one of its numbers is invalid.
+/// Reads the view of a scene. Fails with the reason if one of its numbers is invalid.
 pub(super) fn read_view(
     file: &FileView,
     scene: &Scene,

@@ -12,9 +12,8 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::color::Color;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{
-    Camera, CameraId, Lens, List, LoadOptions, MaterialChoice, Mesh, MeshSource, Model, NONE,
-    Object, ObjectId, Part, Pose, PresetId, Projection, Scene, Sides, SourceCorner, Surface,
-    Tracked, View,
+    Camera, CameraId, Lens, List, MaterialChoice, Mesh, MeshSource, Model, Object, ObjectId,
+    PresetId, Projection, Scene, Sides, SourceCorner, Surface, View,
 };
 use marraztu_render::Renderer;
 use marraztu_render::plan_frame;
@@ -34,21 +33,18 @@ pub struct Flat {
 
 impl Flat {
     /// Builds a triangle at half of [`FAR`].
-    #[must_use]
     pub const fn new(corners: [Snapped; 3]) -> Self {
         Self { corners, distances: [FAR / 2.0; 3] }
     }
 }
 
 /// Encodes the number of a triangle as its colour.
-#[must_use]
 pub fn color_of(number: usize) -> [u8; 4] {
     let [r, g, b, ..] = (number + 1).to_le_bytes();
     [r, g, b, 255]
 }
 
 /// Decodes the number of a triangle from its colour; `None` for the background.
-#[must_use]
 pub fn number_of([r, g, b, _]: [u8; 4]) -> Option<usize> {
     (usize::from(r) | usize::from(g) << 8 | usize::from(b) << 16).checked_sub(1)
 }
@@ -58,28 +54,18 @@ pub fn number_of([r, g, b, _]: [u8; 4]) -> Option<usize> {
 ///
 /// # Panics
 /// If a coordinate has more than 24 bits, which a mesh cannot hold.
-#[must_use]
 #[expect(clippy::cast_precision_loss, reason = "a side is at most 2^14")]
 pub fn scene(objects: &[Vec<Flat>], side: usize) -> (Scene, View) {
     assert!(side.is_power_of_two(), "only then is every corner exact");
     // One unit is one pixel, and the centre of the picture is the origin.
-    let camera = Camera {
-        name: "camera".to_owned(),
-        visible: false,
-        model: model(&[], side, 0),
-        material: MaterialChoice::Preset(PresetId::SILVER),
-        pose: Tracked::new(Pose::facing_minus_z(DVec3::ZERO)),
-        lens: Lens {
-            half_size: side as f64 / 2.0,
-            parallel_near: 0.0,
-            parallel_far: FAR,
-            ..Lens::default()
-        },
-    };
+    let silver = || MaterialChoice::Preset(PresetId::SILVER);
+    let half_size = side as f64 / 2.0;
+    let lens = Lens { half_size, parallel_near: 0.0, parallel_far: FAR, ..Lens::default() };
+    let camera = Camera::new("camera", model(&[], side, 0), silver(), DVec3::ZERO);
+    let camera = Camera { visible: false, lens, ..camera };
     let mut number = 0;
     let objects = objects.iter().zip(1..).map(|(triangles, id)| {
-        let silver = MaterialChoice::Preset(PresetId::SILVER);
-        let mut object = Object::new(model(triangles, side, number), silver);
+        let mut object = Object::new(model(triangles, side, number), silver());
         number += triangles.len();
         // Unlit, so the vertex colours reach the picture unchanged.
         object.surface = Surface::Texture;
@@ -96,20 +82,17 @@ pub fn scene(objects: &[Vec<Flat>], side: usize) -> (Scene, View) {
 }
 
 /// Draws a scene made by [`scene`].
-#[must_use]
 pub fn draw((scene, view): &(Scene, View), side: usize, renderer: &mut Renderer) -> Picture {
     let plan = plan_frame(&Shot::new(scene, view, &Settings::default(), Size::new(side, side)));
     renderer.render(&plan).clone()
 }
 
 /// Draws triangles as one object.
-#[must_use]
 pub fn draw_triangles(triangles: &[Flat], side: usize, renderer: &mut Renderer) -> Picture {
     draw(&scene(&[triangles.to_vec()], side), side, renderer)
 }
 
 /// Converts a corner in subpixels to its position in world space.
-#[must_use]
 #[expect(clippy::cast_precision_loss, reason = "a side is at most 2^14")]
 pub fn place(corner: Snapped, distance: f64, side: usize) -> DVec3 {
     let (half, parts) = (side as f64 / 2.0, f64::from(SUBPIXELS));
@@ -117,12 +100,7 @@ pub fn place(corner: Snapped, distance: f64, side: usize) -> DVec3 {
 }
 
 fn model(triangles: &[Flat], side: usize, first: usize) -> Shared<Model> {
-    let mut source = MeshSource {
-        parts: vec![Part { name: "triangles".to_owned(), material: None }],
-        arities: vec![3; triangles.len()],
-        polygon_parts: vec![0; triangles.len()],
-        ..MeshSource::default()
-    };
+    let mut source = MeshSource::of_polygons([], vec![3; triangles.len()]);
     for (number, triangle) in triangles.iter().enumerate() {
         for (corner, distance) in triangle.corners.into_iter().zip(triangle.distances) {
             let place = place(corner, distance, side);
@@ -130,25 +108,19 @@ fn model(triangles: &[Flat], side: usize, first: usize) -> Shared<Model> {
             let narrow = place.as_vec3();
             assert_eq!(narrow.as_dvec3(), place, "a corner has too many bits");
             let position = u32::try_from(source.positions.len()).expect("few triangles");
-            source.corners.push(SourceCorner { position, uv: NONE, normal: NONE });
+            source.corners.push(SourceCorner::bare(position));
             source.positions.push(narrow.to_array());
             let [r, g, b, _] = color_of(first + number).map(|byte| f32::from(byte) / 255.0);
             source.colors.push([r, g, b]);
         }
     }
-    Shared::new(Model {
-        name: "triangles".to_owned(),
-        source: None,
-        companions: Vec::new(),
-        options: LoadOptions::default(),
-        mesh: Mesh::new(source).expect("numbers of pictures are finite"),
-        materials: Vec::new(),
-        edge_color: None,
-    })
+    Shared::new(Model::of_mesh(
+        "triangles",
+        Mesh::new(source).expect("numbers of pictures are finite"),
+    ))
 }
 
 /// Returns the matrix that moves a scene by a number of pixels to the right and down.
-#[must_use]
 pub fn moved(right: f64, down: f64) -> DMat4 {
     DMat4::from_translation(DVec3::new(right, -down, 0.0))
 }

@@ -19,8 +19,8 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::base::rng::Rng;
 use marraztu_core::scene::{
-    Command, Fill, Item, LoadOptions, Mesh, MeshSource, Model, NONE, Normals, Object, Part,
-    Projection, Scene, SourceCorner, Texture, View, Wrap,
+    Command, Fill, Item, Mesh, MeshSource, Model, NONE, Normals, Object, Projection, Scene,
+    SourceCorner, Texture, View,
 };
 use marraztu_io as io;
 use marraztu_render::plan_frame;
@@ -44,7 +44,6 @@ impl TestPicture {
     ///
     /// # Panics
     /// If the system cannot start that many threads.
-    #[must_use]
     pub fn draw(&self, level: Level, threads: usize) -> Picture {
         let draw = || Renderer::new(level).render(&self.plan).clone();
         if cfg!(target_family = "wasm") {
@@ -56,14 +55,12 @@ impl TestPicture {
     }
 
     /// Returns the name of the picture as the name of a file without its ending.
-    #[must_use]
     pub fn file_stem(&self) -> String {
         self.name.replace(|letter: char| !letter.is_ascii_alphanumeric(), "-")
     }
 }
 
 /// Hashes the width, the height and the bytes of a picture with FNV-1a.
-#[must_use]
 pub fn sum(picture: &Picture) -> u64 {
     let Size { width, height } = picture.size();
     let sides = [width, height].map(|side| (side as u64).to_le_bytes());
@@ -75,7 +72,6 @@ pub fn sum(picture: &Picture) -> u64 {
 ///
 /// # Panics
 /// If a line of the list is neither a comment nor a hash with a name.
-#[must_use]
 pub fn listed() -> Vec<(&'static str, u64)> {
     let line = |line: &'static str| {
         let (sum, name) = line.split_once("  ")?;
@@ -89,7 +85,6 @@ pub fn listed() -> Vec<(&'static str, u64)> {
 }
 
 /// Returns the pictures, in the order of the list.
-#[must_use]
 pub fn all() -> Vec<TestPicture> {
     let (scene, view) = io::default_scene();
     let near = nearer(&scene);
@@ -173,13 +168,9 @@ fn textured(scene: &Scene) -> Scene {
     let mut rng = Rng::new(5);
     let texels = (0..64).map(|_| rng.bits().to_le_bytes());
     let texels = texels.map(|[r, g, b, ..]| [r, g, b, 255]).collect();
-    let texture = Shared::new(Texture {
-        source: std::path::PathBuf::new(),
-        picture: Picture::from_pixels(Size::new(8, 8), texels).unwrap_or_default().into(),
-        wrap: Wrap::Repeat,
-        offset: [0.1, 0.2],
-        scale: [3.0, 5.0],
-    });
+    let picture = Picture::from_pixels(Size::new(8, 8), texels).unwrap_or_default();
+    let (offset, scale) = ([0.1, 0.2], [3.0, 5.0]);
+    let texture = Shared::new(Texture { offset, scale, ..Texture::new("", picture) });
     change(scene, |object| {
         object.model = wall();
         object.texture = Some(texture);
@@ -188,31 +179,17 @@ fn textured(scene: &Scene) -> Scene {
 
 /// Builds a leaning square of 2 x 2 quads with texture coordinates.
 fn wall() -> Shared<Model> {
-    let mut source = MeshSource {
-        parts: vec![Part { name: "wall".to_owned(), material: None }],
-        polygon_parts: vec![0; 4],
-        arities: vec![4; 4],
-        ..MeshSource::default()
-    };
+    let mut source = MeshSource::of_polygons([], Vec::new());
     for i in 0..9_u8 {
         let (x, y) = (f32::from(i % 3) - 1.0, f32::from(i / 3) - 1.0);
         source.positions.push([9.0 * x, 9.0 * y, -3.0 * x * y]);
         source.uvs.push([x, y]);
     }
     for first in [0, 1, 3, 4] {
-        for i in [first, first + 1, first + 4, first + 3] {
-            source.corners.push(SourceCorner { position: i, uv: i, normal: NONE });
-        }
+        let quad = [first, first + 1, first + 4, first + 3];
+        source.push_polygon(&quad.map(|i| SourceCorner { position: i, uv: i, normal: NONE }));
     }
-    Shared::new(Model {
-        name: "wall".to_owned(),
-        source: None,
-        companions: Vec::new(),
-        options: LoadOptions::default(),
-        mesh: Mesh::new(source).expect("these numbers are finite"),
-        materials: Vec::new(),
-        edge_color: None,
-    })
+    Shared::new(Model::of_mesh("wall", Mesh::new(source).expect("these numbers are finite")))
 }
 
 fn change(scene: &Scene, change: impl FnOnce(&mut Object)) -> Scene {

@@ -11,13 +11,11 @@ pub struct TextBox {
 
 impl TextBox {
     /// Makes a box from its corner and size.
-    #[must_use]
     pub fn new([left, top]: [f32; 2], [width, height]: [f32; 2]) -> Self {
         Self { min: [left, top], max: [left + width, top + height] }
     }
 
     /// Returns whether two boxes share more than an edge.
-    #[must_use]
     pub fn overlaps(&self, other: &Self) -> bool {
         (0..2).all(|i| self.min[i] < other.max[i] && other.min[i] < self.max[i])
     }
@@ -31,7 +29,6 @@ impl TextBox {
 /// free place within `reach`. Labels never overlap each other, a mark, or the line that joins the
 /// marks: one without room is left out. The label of the mark `first` is placed first, even over
 /// the line if there is no other room.
-#[must_use]
 pub fn place(
     marks: &[[f32; 2]],
     sizes: &[[f32; 2]],

@@ -9,13 +9,12 @@ use serde::{Deserialize, Serialize};
 
 pub use self::labels::{TextBox, place};
 pub use self::panels::{Panel, PanelMark, Panels, Scale};
-pub use self::table::{brief, csv, heading, left_out_in_words, markdown, tabs, text};
+pub use self::table::{brief, csv, heading, left_out_in_words, markdown, quoted, tabs, text};
 pub use self::verdict::capitalized;
 use super::candidates::Group;
 use super::error::{Measure, Region};
 use super::front::{Point, fastest_within, front, most_exact_within};
 use super::sweep::{Findings, Measured, Row, Verdict};
-use marraztu_core::accuracy::{Axis, Choice};
 
 /// The results of a sweep, with the options of the report.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -52,7 +51,6 @@ const NAMES: usize = 10;
 
 impl Report {
     /// Returns the rows of the table. Presets are measured first and last, but listed together.
-    #[must_use]
     pub fn rows(&self) -> Vec<&Row> {
         let mut rows: Vec<&Row> = self.findings.rows.iter().collect();
         rows.sort_by_key(|row| row.group != Group::Preset);
@@ -60,14 +58,12 @@ impl Report {
     }
 
     /// Returns the error of a row against its own reference.
-    #[must_use]
     pub fn error(&self, row: &Row) -> f64 {
         self.measure.of(&row.error, self.region)
     }
 
     /// Returns the points as time and error against the ideal. The error of another model is NaN:
     /// it is not comparable.
-    #[must_use]
     pub fn points(&self) -> Vec<Point> {
         let error = |p: &Measured| {
             p.ideal.as_ref().map_or(f64::NAN, |error| self.measure.of(error, self.region))
@@ -99,14 +95,12 @@ impl Report {
     }
 
     /// Returns the indices of the points on the front, the fastest first.
-    #[must_use]
     pub fn front(&self) -> Vec<usize> {
         self.front_by(LEAST_CUT)
     }
 
     /// Returns the default and the front, at most ten points, the fastest first. If there are more,
     /// the ones with the largest cuts of the error remain.
-    #[must_use]
     pub fn overview(&self) -> Vec<usize> {
         let mut least = LEAST_CUT;
         loop {
@@ -125,52 +119,28 @@ impl Report {
     }
 
     /// Returns the fastest point within the error budget; `None` without such a budget.
-    #[must_use]
     pub fn fastest(&self) -> Option<Option<usize>> {
         let (places, points) = self.comparable();
         self.budgets.error.map(|most| fastest_within(&points, most).map(|i| places[i]))
     }
 
     /// Returns the most exact point within the time budget; `None` without such a budget.
-    #[must_use]
     pub fn most_exact(&self) -> Option<Option<usize>> {
         let (places, points) = self.comparable();
         self.budgets.ms.map(|most| most_exact_within(&points, most).map(|i| places[i]))
     }
 
     /// Returns the index of the point with the current settings.
-    #[must_use]
     pub fn current(&self) -> Option<usize> {
         self.findings.points.iter().position(|point| point.settings == self.findings.current)
     }
 
-    /// Summarises the figures in sentences.
-    #[must_use]
-    pub fn verdict(&self) -> Vec<String> {
-        verdict::verdict(self)
-    }
-
-    /// Summarises the figures on one axis in a paragraph.
-    #[must_use]
-    pub fn verdict_on(&self, axis: &Axis) -> String {
-        verdict::verdict_on(self, axis)
-    }
-
-    /// Describes a choice of an axis in a line: its time and error against the default's. `None` if
-    /// the choice was not measured.
-    #[must_use]
-    pub fn verdict_on_choice(&self, axis: &Axis, choice: &Choice) -> Option<String> {
-        verdict::verdict_on_choice(self, axis, choice)
-    }
-
     /// Formats the report as JSON.
-    #[must_use]
     pub fn json(&self) -> String {
         serde_json::to_string_pretty(self).expect("a report is plain data")
     }
 
     /// Returns the answer to each budget, as a sentence.
-    #[must_use]
     pub fn answers(&self) -> Vec<String> {
         let points = self.points();
         let named = |found: Option<usize>| match found {

@@ -69,7 +69,6 @@ pub struct Panels {
 
 impl Panels {
     /// Lays out the plots of a report.
-    #[must_use]
     pub fn new(report: &Report) -> Self {
         let findings = &report.findings;
         let floor = findings.floor;
@@ -122,7 +121,6 @@ impl Panels {
     }
 
     /// Returns the panel of an axis, or the overview if the axis was not measured.
-    #[must_use]
     pub fn of(&self, key: Option<&str>) -> &Panel {
         let is_it = |panel: &&Panel| panel.axis.map(|axis| axis.key) == key;
         self.axes.iter().find(is_it).unwrap_or(&self.overview)

@@ -9,7 +9,6 @@ use crate::sweep::{Measured, Row, TOO_BUSY, Verdict};
 use marraztu_core::accuracy::{ACCURACY_PRESETS, AXES, Axis, AxisKind};
 
 /// Formats a number with three significant digits: "0", "0.0123", "4.57", "137", "1.2e-5".
-#[must_use]
 pub fn brief(number: f64) -> String {
     let size = number.abs();
     if size == 0.0 {
@@ -34,7 +33,6 @@ pub fn brief(number: f64) -> String {
 }
 
 /// Returns the heading of a row's group.
-#[must_use]
 pub fn heading(row: &Row) -> String {
     match row.group {
         Group::Preset => "presets".to_owned(),
@@ -52,7 +50,6 @@ pub fn heading(row: &Row) -> String {
 }
 
 /// Writes the table as text, with the verdict above and a legend of the marks below.
-#[must_use]
 pub fn text(report: &Report) -> String {
     let mut text = head(report);
     for sentence in report.verdict() {
@@ -158,7 +155,6 @@ fn figures(report: &Report, row: &Row) -> String {
 }
 
 /// Lists what was not measured in one line, with the reasons; empty if everything was.
-#[must_use]
 pub fn left_out_in_words(report: &Report) -> String {
     let all = report.findings.left_out.iter();
     let all: Vec<String> = all.map(|it| format!("{} ({})", it.what, it.reason)).collect();
@@ -215,7 +211,6 @@ fn wrapped(sentence: &str, width: usize) -> String {
 }
 
 /// Writes the rows of one axis as a Markdown table, with figures over all pixels.
-#[must_use]
 pub fn markdown(report: &Report, axis: &Axis) -> String {
     let mut text = "| choice | time | interquartile range | maximum | RMSE | PSNR | differing \
                     bytes | pixels whose coverage differs | FLIP |\n\
@@ -250,13 +245,11 @@ pub fn markdown(report: &Report, axis: &Axis) -> String {
 }
 
 /// Writes the table as comma-separated values, with the choice of every axis in each row.
-#[must_use]
 pub fn csv(report: &Report) -> String {
     joined(report, ",", quoted)
 }
 
 /// Writes the table separated by tabs, for pasting into a spreadsheet.
-#[must_use]
 pub fn tabs(report: &Report) -> String {
     joined(report, "\t", |field| field.replace(['\t', '\n'], " "))
 }
@@ -269,81 +262,73 @@ fn joined(report: &Report, separator: &str, field: fn(&str) -> String) -> String
     cells(report).into_iter().map(line).collect()
 }
 
+/// A row of the table, with what its columns need.
+struct Cells<'a> {
+    row: &'a Row,
+    point: &'a Measured,
+    noise: [f64; 2],
+    front: bool,
+    current: bool,
+}
+
+/// The name of a column, and its value in a row.
+type Column = (&'static str, fn(&Cells<'_>) -> String);
+
+/// The columns of figures. Errors refer to the row's own reference, which the column `against`
+/// names.
+const FIGURES: [Column; 23] = [
+    ("ms", |it| it.point.ms.to_string()),
+    ("ratio", |it| it.point.ratio.quartiles.median.to_string()),
+    ("ratio_lower", |it| it.point.ratio.quartiles.lower.to_string()),
+    ("ratio_upper", |it| it.point.ratio.quartiles.upper.to_string()),
+    ("noise_lower", |it| it.noise[0].to_string()),
+    ("noise_upper", |it| it.noise[1].to_string()),
+    ("pairs", |it| it.point.ratio.pairs.to_string()),
+    ("thrown_away", |it| it.point.ratio.thrown.to_string()),
+    ("verdict", |it| it.point.verdict.word().to_owned()),
+    ("against", |it| it.row.against.word().to_owned()),
+    ("largest", |it| it.row.error.whole.largest.to_string()),
+    ("rmse", |it| it.row.error.whole.rmse.to_string()),
+    ("psnr", |it| it.row.error.whole.psnr.unwrap_or(f64::INFINITY).to_string()),
+    ("differing", |it| it.row.error.whole.differing.to_string()),
+    ("coverage", |it| it.row.error.coverage.to_string()),
+    ("flip", |it| it.row.error.flip.to_string()),
+    ("inside_largest", |it| it.row.error.inside.largest.to_string()),
+    ("inside_rmse", |it| it.row.error.inside.rmse.to_string()),
+    ("inside_differing", |it| it.row.error.inside.differing.to_string()),
+    ("rmse_against_256_samples", |it| {
+        it.point.ideal.map(|error| error.whole.rmse.to_string()).unwrap_or_default()
+    }),
+    ("hash", |it| it.point.hash.clone()),
+    ("front", |it| it.front.to_string()),
+    ("current", |it| it.current.to_string()),
+];
+
 /// Returns the cells of the table; the first row contains the column names.
 fn cells(report: &Report) -> Vec<Vec<String>> {
-    const FIGURES: [&str; 23] = [
-        "ms",
-        "ratio",
-        "ratio_lower",
-        "ratio_upper",
-        "noise_lower",
-        "noise_upper",
-        "pairs",
-        "thrown_away",
-        "verdict",
-        "against",
-        "largest",
-        "rmse",
-        "psnr",
-        "differing",
-        "coverage",
-        "flip",
-        "inside_largest",
-        "inside_rmse",
-        "inside_differing",
-        "rmse_against_256_samples",
-        "hash",
-        "front",
-        "current",
-    ];
     let (front, current) = (report.front(), report.current());
     // One column per axis lets spreadsheets filter by choice.
     let axes = AXES.iter().map(|axis| axis.key);
-    let head = ["group", "name"].into_iter().chain(axes).chain(FIGURES);
+    let head = ["group", "name"].into_iter().chain(axes).chain(FIGURES.map(|(name, _)| name));
     let mut cells = vec![head.map(str::to_owned).collect()];
     for row in &report.findings.rows {
-        let Measured { settings, ms, ratio, verdict, ideal, hash, .. } =
-            &report.findings.points[row.point];
-        // Errors refer to the row's own reference, which the column `against` names.
-        let error = &row.error;
-        let (whole, inside) = (&error.whole, &error.inside);
-        let quartiles = &ratio.quartiles;
-        let [lower, upper] = report.findings.noise_of(row.point);
-        let psnr = whole.psnr.map_or_else(|| "inf".to_owned(), |psnr| psnr.to_string());
-        let figures: [String; FIGURES.len()] = [
-            ms.to_string(),
-            quartiles.median.to_string(),
-            quartiles.lower.to_string(),
-            quartiles.upper.to_string(),
-            lower.to_string(),
-            upper.to_string(),
-            ratio.pairs.to_string(),
-            ratio.thrown.to_string(),
-            verdict.word().to_owned(),
-            row.against.word().to_owned(),
-            whole.largest.to_string(),
-            whole.rmse.to_string(),
-            psnr,
-            whole.differing.to_string(),
-            error.coverage.to_string(),
-            error.flip.to_string(),
-            inside.largest.to_string(),
-            inside.rmse.to_string(),
-            inside.differing.to_string(),
-            ideal.map(|error| error.whole.rmse.to_string()).unwrap_or_default(),
-            hash.clone(),
-            front.contains(&row.point).to_string(),
-            (current == Some(row.point)).to_string(),
-        ];
-        let axes = AXES.iter().map(|axis| axis.chosen(settings).word.to_owned());
+        let point = &report.findings.points[row.point];
+        let of_row = Cells {
+            row,
+            point,
+            noise: report.findings.noise_of(row.point),
+            front: front.contains(&row.point),
+            current: current == Some(row.point),
+        };
         let names = [heading(row), row.name.clone()].into_iter();
-        cells.push(names.chain(axes).chain(figures).collect());
+        let axes = AXES.iter().map(|axis| axis.chosen(&point.settings).word.to_owned());
+        cells.push(names.chain(axes).chain(FIGURES.map(|(_, value)| value(&of_row))).collect());
     }
     cells
 }
 
-/// Quotes a field if it contains commas, quotes or line ends (RFC 4180).
-fn quoted(field: &str) -> String {
+/// Returns a text as a field of CSV (RFC 4180).
+pub fn quoted(field: &str) -> String {
     if field.contains([',', '"', '\n']) {
         format!("\"{}\"", field.replace('"', "\"\""))
     } else {

@@ -43,61 +43,88 @@ enum Kind {
     Worse,
 }
 
-/// Writes a paragraph on one axis.
-pub(super) fn verdict_on(report: &Report, axis: &Axis) -> String {
-    if axis.kind == AxisKind::Model {
-        return "A model: none of its choices is an error of another.".to_owned();
-    }
-    let said: Vec<Said<'_>> =
-        said(report).into_iter().filter(|it| it.axis.key == axis.key).collect();
-    let noise = noise(report, report.findings.rows_of(axis).map(|row| row.point));
-    let mut sentences = told(&said);
-    if sentences.is_empty() {
-        sentences.push("No choice differs from the default beyond the noise here.".to_owned());
-    }
-    sentences.extend(reasons(report, axis));
-    let capital: Vec<String> = sentences.iter().map(|sentence| capitalized(sentence)).collect();
-    let noise = noise.map_or_else(|| BUSY.to_owned(), |noise| format!("noise {noise}"));
-    format!("{} ({}; {noise}.)", capital.join(" "), place(report))
-}
-
-/// Writes a line on a measured choice of an axis: its time and its error against the default's.
-pub(super) fn verdict_on_choice(report: &Report, axis: &Axis, choice: &Choice) -> Option<String> {
-    let Findings { points, .. } = &report.findings;
-    let rows = || report.findings.rows_of(axis);
-    let row = rows().find(|row| axis.chosen(&points[row.point].settings).word == choice.word)?;
-    let before = rows().find(|row| row.point == 0)?;
-    let [error, usual] = [row, before].map(|row| digits(row.error.whole.rmse));
-    let name = capitalized(&axis.in_words(choice));
-    // A model is measured against the chosen one, which may not be the default.
-    let is_model = axis.kind == AxisKind::Model;
-    if row.point == 0 {
-        return Some(match is_model {
-            true => format!("{name}: no choice of a model is an error of another."),
-            false => format!("{name}, the default: error {error} of 255."),
+impl Report {
+    /// Summarises the figures in sentences.
+    pub fn verdict(&self) -> Vec<String> {
+        let said = said(self);
+        let mut sentences = told(&said);
+        let is_faster = |it: &Said<'_>| it.point.verdict == Verdict::Faster;
+        let nothing = if said.iter().any(is_faster) { "nothing else" } else { "nothing" };
+        let noise = noise(self, self.findings.rows.iter().map(|row| row.point));
+        let noise = noise.unwrap_or_else(|| BUSY.to_owned());
+        sentences.push(match self.findings.complete {
+            true => format!("{nothing} saves more than the noise ({noise})."),
+            false => "other choices are not measured yet.".to_owned(),
         });
+        if let Some(first) = sentences.first_mut() {
+            // Each error is against the picture that is exact in this choice.
+            *first = format!("{}, each choice alone: {first}", place(self));
+        }
+        // The first sentence continues after a colon.
+        sentences.iter_mut().skip(1).for_each(|sentence| *sentence = capitalized(sentence));
+        sentences
     }
-    let point = &points[row.point];
-    let default = axis.in_words(axis.chosen(&points[0].settings));
-    let time = match point.verdict {
-        Verdict::Alike => "the same time as".to_owned(),
-        Verdict::Busy => "no faster or slower, as far as this busy machine tells, than".to_owned(),
-        Verdict::Faster | Verdict::Slower => {
-            format!("{} the time of", times(point.ratio.quartiles.median))
+
+    /// Summarises the figures on one axis in a paragraph.
+    pub fn verdict_on(&self, axis: &Axis) -> String {
+        if axis.kind == AxisKind::Model {
+            return "A model: none of its choices is an error of another.".to_owned();
         }
-    };
-    let noise = noise(report, [row.point].into_iter());
-    let noise = noise.map_or_else(String::new, |noise| format!(" (noise {noise})"));
-    Some(match is_model {
-        // One of both is the reference.
-        true => {
-            let error = digits(row.error.whole.rmse.max(before.error.whole.rmse));
-            format!("{name}: {time} {default}{noise}, and differs from it by {error} of 255.")
+        let said: Vec<Said<'_>> =
+            said(self).into_iter().filter(|it| it.axis.key == axis.key).collect();
+        let noise = noise(self, self.findings.rows_of(axis).map(|row| row.point));
+        let mut sentences = told(&said);
+        if sentences.is_empty() {
+            sentences.push("No choice differs from the default beyond the noise here.".to_owned());
         }
-        false => {
-            format!("{name}: {time} {default}{noise}, error {error} of 255 instead of {usual}.")
+        sentences.extend(reasons(self, axis));
+        let capital: Vec<String> = sentences.iter().map(|sentence| capitalized(sentence)).collect();
+        let noise = noise.map_or_else(|| BUSY.to_owned(), |noise| format!("noise {noise}"));
+        format!("{} ({}; {noise}.)", capital.join(" "), place(self))
+    }
+
+    /// Describes a choice of an axis in a line: its time and error against the default's. `None` if
+    /// the choice was not measured.
+    pub fn verdict_on_choice(&self, axis: &Axis, choice: &Choice) -> Option<String> {
+        let Findings { points, .. } = &self.findings;
+        let rows = || self.findings.rows_of(axis);
+        let row =
+            rows().find(|row| axis.chosen(&points[row.point].settings).word == choice.word)?;
+        let before = rows().find(|row| row.point == 0)?;
+        let [error, usual] = [row, before].map(|row| digits(row.error.whole.rmse));
+        let name = capitalized(&axis.in_words(choice));
+        // A model is measured against the chosen one, which may not be the default.
+        let is_model = axis.kind == AxisKind::Model;
+        if row.point == 0 {
+            return Some(match is_model {
+                true => format!("{name}: no choice of a model is an error of another."),
+                false => format!("{name}, the default: error {error} of 255."),
+            });
         }
-    })
+        let point = &points[row.point];
+        let default = axis.in_words(axis.chosen(&points[0].settings));
+        let time = match point.verdict {
+            Verdict::Alike => "the same time as".to_owned(),
+            Verdict::Busy => {
+                "no faster or slower, as far as this busy machine tells, than".to_owned()
+            }
+            Verdict::Faster | Verdict::Slower => {
+                format!("{} the time of", times(point.ratio.quartiles.median))
+            }
+        };
+        let noise = noise(self, [row.point].into_iter());
+        let noise = noise.map_or_else(String::new, |noise| format!(" (noise {noise})"));
+        Some(match is_model {
+            // One of both is the reference.
+            true => {
+                let error = digits(row.error.whole.rmse.max(before.error.whole.rmse));
+                format!("{name}: {time} {default}{noise}, and differs from it by {error} of 255.")
+            }
+            false => {
+                format!("{name}: {time} {default}{noise}, error {error} of 255 instead of {usual}.")
+            }
+        })
+    }
 }
 
 /// Explains why choices take longer than more exact ones, if this happens here.
@@ -124,27 +151,6 @@ fn reasons(report: &Report, axis: &Axis) -> Vec<String> {
         Some(format!("{} takes longer than a more exact choice: {because}.", axis.in_words(choice)))
     };
     (0..measured.len()).filter_map(reason).collect()
-}
-
-/// Writes the sentences on a report.
-pub(super) fn verdict(report: &Report) -> Vec<String> {
-    let said = said(report);
-    let mut sentences = told(&said);
-    let is_faster = |it: &Said<'_>| it.point.verdict == Verdict::Faster;
-    let nothing = if said.iter().any(is_faster) { "nothing else" } else { "nothing" };
-    let noise = noise(report, report.findings.rows.iter().map(|row| row.point));
-    let noise = noise.unwrap_or_else(|| BUSY.to_owned());
-    sentences.push(match report.findings.complete {
-        true => format!("{nothing} saves more than the noise ({noise})."),
-        false => "other choices are not measured yet.".to_owned(),
-    });
-    if let Some(first) = sentences.first_mut() {
-        // Each error is against the picture that is exact in this choice.
-        *first = format!("{}, each choice alone: {first}", place(report));
-    }
-    // The first sentence continues after a colon.
-    sentences.iter_mut().skip(1).for_each(|sentence| *sentence = capitalized(sentence));
-    sentences
 }
 
 /// Names the measured picture: its size, its samples and its scene.
@@ -360,7 +366,6 @@ fn digits(number: f64) -> String {
 }
 
 /// Returns a text that begins with a capital letter.
-#[must_use]
 pub fn capitalized(text: &str) -> String {
     let mut letters = text.chars();
     let first = letters.next().map(|first| first.to_uppercase().to_string());

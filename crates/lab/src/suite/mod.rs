@@ -135,25 +135,21 @@ impl SuiteDetail {
 
 impl SuiteScene {
     /// Finds a scene by name.
-    #[must_use]
     pub fn named(word: &str) -> Option<&'static Self> {
         SUITE.iter().find(|scene| scene.word == word)
     }
 
     /// Builds the scene and its view; `detail` is in thousandths of the full triangle count.
-    #[must_use]
     pub fn open(&self, detail: u32) -> (Scene, View) {
         (self.make)(detail.max(1))
     }
 
     /// Returns the axes that are measured on this scene.
-    #[must_use]
     pub fn measured(&self) -> Vec<&'static Axis> {
         self.axes.iter().filter_map(|key| Axis::named(key)).collect()
     }
 
     /// Returns the command that repeats the measurement.
-    #[must_use]
     pub fn command(&self) -> String {
         format!("marraztu lab --suite={}", self.word)
     }

@@ -7,16 +7,14 @@
     reason = "coordinates of small scenes"
 )]
 
-use std::path::PathBuf;
-
 use glam::{DMat4, DVec3};
 
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{
-    Aim, Camera, Light, LightId, LightKind, List, LoadOptions, Material, MaterialChoice, Mesh,
-    MeshSource, Model, NONE, Object, ObjectId, Orbit, Part, Pose, Scene, Smoothing, SourceCorner,
-    SpotOwner, Surface, Texture, Tracked, View, Wrap,
+    Aim, Camera, Light, LightId, LightKind, List, Material, MaterialChoice, Mesh, MeshSource,
+    Model, NONE, Object, ObjectId, Orbit, Part, Pose, Scene, Smoothing, SourceCorner, SpotOwner,
+    Surface, Texture, Tracked, View,
 };
 use marraztu_io::{default_scene, empty_scene, own_model};
 
@@ -41,22 +39,15 @@ impl Maker {
             let uv = if textured { *position } else { NONE };
             SourceCorner { position: *position, uv, normal: NONE }
         };
-        self.source.corners.extend(vertices.iter().map(corner));
-        self.source.arities.push(vertices.len() as u32);
-        self.source.polygon_parts.push(0);
+        self.source.push_polygon(&vertices.iter().map(corner).collect::<Vec<_>>());
     }
 
     fn model(mut self, name: &str) -> Shared<Model> {
         self.source.parts = vec![Part { name: name.to_owned(), material: None }];
-        Shared::new(Model {
-            name: name.to_owned(),
-            source: None,
-            companions: Vec::new(),
-            options: LoadOptions::default(),
-            mesh: Mesh::new(self.source).expect("the coordinates are finite"),
-            materials: Vec::new(),
-            edge_color: None,
-        })
+        Shared::new(Model::of_mesh(
+            name,
+            Mesh::new(self.source).expect("the coordinates are finite"),
+        ))
     }
 }
 
@@ -91,11 +82,9 @@ fn ball(rings: u32) -> Shared<Model> {
 fn shiny(color: [f64; 3], exponent: f64) -> MaterialChoice {
     let [ambient, diffuse] = [0.15, 0.55].map(|part| color.map(|c| c * part));
     MaterialChoice::Own(Material {
-        ambient,
-        diffuse,
         specular: [0.8; 3],
         exponent,
-        emission: [0.0; 3],
+        ..Material::matte(ambient, diffuse)
     })
 }
 
@@ -198,10 +187,7 @@ pub(super) fn textures(_: u32) -> (Scene, View) {
             *pixel = [190, 90, 60, 255];
         }
     }
-    let source = PathBuf::from("tiles");
-    let (picture, wrap) = (Shared::new(picture), Wrap::default());
-    let texture = Texture { source, picture, wrap, offset: [0.0; 2], scale: [1.0; 2] };
-    floor.texture = Some(Shared::new(texture));
+    floor.texture = Some(Shared::new(Texture::new("tiles", picture)));
     floor.surface = Surface::default();
     stage(vec![floor], DVec3::ZERO)
 }

@@ -67,12 +67,11 @@ impl Accelerator for EdgeOrder {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use marraztu_core::scene::{MeshSource, Part, SourceCorner};
+    use marraztu_core::scene::{MeshSource, SourceCorner};
 
     /// A roof of two triangles over a square.
     #[test]
     fn an_edge_keeps_its_number_its_ends_and_its_polygons() {
-        let corner = |position| SourceCorner { position, uv: NONE, normal: NONE };
         let mesh = Mesh::new(MeshSource {
             positions: vec![
                 [0.0, 0.0, 0.0],
@@ -81,11 +80,10 @@ mod tests {
                 [0.0, 2.0, 0.0],
                 [1.0, 1.0, 1.0],
             ],
-            corners: [0, 1, 2, 3, 1, 0, 4, 2, 1, 4].map(corner).to_vec(),
-            arities: vec![4, 3, 3],
-            polygon_parts: vec![0; 3],
-            parts: vec![Part { name: "roof".to_owned(), material: None }],
-            ..MeshSource::default()
+            ..MeshSource::of_polygons(
+                [0, 1, 2, 3, 1, 0, 4, 2, 1, 4].map(SourceCorner::bare),
+                vec![4, 3, 3],
+            )
         })
         .unwrap();
         let order = mesh.edge_order();

@@ -7,9 +7,7 @@ use glam::{DMat3, DMat4, DVec3};
 use super::observer::ObserverSpace;
 use marraztu_core::base::once::get_or_compute;
 use marraztu_core::base::{Shared, color::Color, math};
-use marraztu_core::scene::{
-    Camera, LoadOptions, Mesh, MeshSource, Model, NONE, Part, SourceCorner,
-};
+use marraztu_core::scene::{Camera, Mesh, MeshSource, Model, SourceCorner};
 
 /// The colour of a bulb's diamond.
 pub(super) const YELLOW: Color = Color([255, 255, 0]);
@@ -51,23 +49,10 @@ pub(super) fn world_from_diamond(observer: &ObserverSpace, bulb: DVec3) -> Optio
 pub(super) fn diamond() -> &'static Shared<Model> {
     static DIAMOND: OnceLock<Shared<Model>> = OnceLock::new();
     get_or_compute(&DIAMOND, || {
-        let corner = |position| SourceCorner { position, uv: NONE, normal: NONE };
         let mesh = Mesh::new(MeshSource {
             positions: vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]],
-            corners: [0, 1, 2, 3].map(corner).to_vec(),
-            arities: vec![4],
-            polygon_parts: vec![0],
-            parts: vec![Part { name: "diamond".to_owned(), material: None }],
-            ..MeshSource::default()
+            ..MeshSource::of_polygons([0, 1, 2, 3].map(SourceCorner::bare), vec![4])
         });
-        Shared::new(Model {
-            name: "diamond".to_owned(),
-            source: None,
-            companions: Vec::new(),
-            options: LoadOptions::default(),
-            mesh: mesh.expect("a square is a mesh"),
-            materials: Vec::new(),
-            edge_color: None,
-        })
+        Shared::new(Model::of_mesh("diamond", mesh.expect("a square is a mesh")))
     })
 }

@@ -1,6 +1,5 @@
 //! Converts materials, textures and lights to pipelines.
 
-use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use super::cover::Cover;
@@ -18,19 +17,13 @@ use marraztu_core::base::{
     Shared,
     color::{self, Color},
 };
-use marraztu_core::scene::{MapKind, PartLook, Surface, Texture, Wrap};
+use marraztu_core::scene::{MapKind, PartLook, Surface, Texture};
 
 /// Returns a white texture, which does not change a surface.
 fn white() -> &'static Shared<Texture> {
     static WHITE: OnceLock<Shared<Texture>> = OnceLock::new();
     get_or_compute(&WHITE, || {
-        Shared::new(Texture {
-            source: PathBuf::new(),
-            picture: Picture::filled(Size::new(1, 1), [255; 4]).into(),
-            wrap: Wrap::Repeat,
-            offset: [0.0; 2],
-            scale: [1.0; 2],
-        })
+        Shared::new(Texture::new("", Picture::filled(Size::new(1, 1), [255; 4])))
     })
 }
 

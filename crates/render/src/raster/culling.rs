@@ -165,7 +165,7 @@ mod tests {
     use crate::screen::clip::ScreenVertex;
     use crate::screen::coverage::doubled_area;
     use marraztu_core::base::rng::Rng;
-    use marraztu_core::scene::{Lens, Mesh, MeshSource, NONE, Part, Projection, SourceCorner};
+    use marraztu_core::scene::{Lens, Mesh, MeshSource, Projection, SourceCorner};
 
     /// Returns a ball with corners displaced by at most `off`, so some triangles are slivers.
     fn ball(rows: u32, off: f64, rng: &mut Rng) -> Mesh {
@@ -183,15 +183,9 @@ mod tests {
             let at = |down: u32, right: u32| (row + down) * columns + (column + right) % columns;
             corners.extend([at(0, 0), at(1, 0), at(1, 1), at(0, 0), at(1, 1), at(0, 1)]);
         }
-        let corner = |position| SourceCorner { position, uv: NONE, normal: NONE };
-        let source = MeshSource {
-            arities: vec![3; corners.len() / 3],
-            polygon_parts: vec![0; corners.len() / 3],
-            corners: corners.into_iter().map(corner).collect(),
-            parts: vec![Part { name: "ball".to_owned(), material: None }],
-            positions,
-            ..MeshSource::default()
-        };
+        let arities = vec![3; corners.len() / 3];
+        let corners = corners.into_iter().map(SourceCorner::bare);
+        let source = MeshSource { positions, ..MeshSource::of_polygons(corners, arities) };
         Mesh::new(source).unwrap()
     }
 

@@ -151,10 +151,7 @@ fn halved(picture: &Picture, decoding: Decoding) -> Picture {
 
 #[cfg(test)]
 mod tests {
-    use std::path::PathBuf;
-
     use super::*;
-    use marraztu_core::scene::Wrap;
 
     const TRILINEAR: Filter = Filter::Trilinear;
 
@@ -162,9 +159,8 @@ mod tests {
     fn patterned(side: usize, is_white: impl Fn(usize) -> bool) -> Shared<Texture> {
         let at = |i: usize| if is_white(i) { [255; 4] } else { [0, 0, 0, 255] };
         let pixels = (0..side * side).map(at).collect();
-        let picture = Picture::from_pixels(Size::new(side, side), pixels).unwrap().into();
-        let (wrap, offset, scale) = (Wrap::Repeat, [0.0; 2], [1.0; 2]);
-        Shared::new(Texture { source: PathBuf::new(), picture, wrap, offset, scale })
+        let picture = Picture::from_pixels(Size::new(side, side), pixels).unwrap();
+        Shared::new(Texture::new("", picture))
     }
 
     fn chequered(side: usize) -> Shared<Texture> {
@@ -216,10 +212,7 @@ mod tests {
     fn odd_sizes_and_a_single_texel_have_mipmap_chains() {
         for (width, height, levels) in [(1, 1, 1), (5, 3, 3), (1, 8, 4)] {
             let size = Size::new(width, height);
-            let texture = Texture {
-                picture: Picture::filled(size, [9; 4]).into(),
-                ..Texture::clone(&chequered(1))
-            };
+            let texture = Texture::new("", Picture::filled(size, [9; 4]));
             let mips = Mips::new(&Shared::new(texture), Decoding::Stored);
             assert_eq!(mips.levels.len(), levels);
             let color: [f64; 4] =

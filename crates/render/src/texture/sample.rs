@@ -131,16 +131,14 @@ fn bring(i: i64, count: usize, wrap: Wrap) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use std::path::PathBuf;
-
     use super::*;
     use marraztu_core::base::image::{Picture, Size};
 
     /// Red and green above, blue and white below.
     fn four(wrap: Wrap) -> Texture {
         let pixels = vec![[255, 0, 0, 255], [0, 255, 0, 255], [0, 0, 255, 255], [255, 255, 255, 0]];
-        let picture = Picture::from_pixels(Size::new(2, 2), pixels).unwrap().into();
-        Texture { source: PathBuf::new(), picture, wrap, offset: [0.0; 2], scale: [1.0; 2] }
+        let picture = Picture::from_pixels(Size::new(2, 2), pixels).unwrap();
+        Texture { wrap, ..Texture::new("", picture) }
     }
 
     fn at(uv: [f64; 2], filter: Filter, wrap: Wrap) -> [f64; 4] {

@@ -122,39 +122,33 @@ pub const AXES: &[Axis] = &[
 
 impl Axis {
     /// The axis with this key.
-    #[must_use]
     pub fn named(key: &str) -> Option<&'static Self> {
         AXES.iter().find(|axis| axis.key == key)
     }
 
     /// The choice with this word.
-    #[must_use]
     pub fn choice(&self, word: &str) -> Option<&'static Choice> {
         self.choices.iter().find(|choice| choice.word == word)
     }
 
     /// The choice of these settings.
-    #[must_use]
     pub fn chosen(&self, settings: &Settings) -> &'static Choice {
         let chosen = self.choices.iter().find(|choice| choice.is(settings));
         chosen.expect("every value of a setting is a choice of its axis")
     }
 
     /// One of its choices in a sentence: "nearest texture filter", "depth in 16 bits".
-    #[must_use]
     pub fn in_words(&self, choice: &Choice) -> String {
         self.phrase.replace("{}", &uncapitalized(choice.label))
     }
 
     /// The choice of the default settings.
-    #[must_use]
     pub fn default_choice(&self) -> &'static Choice {
         self.chosen(&Settings::default())
     }
 
     /// The most exact choice that differs from the others with these settings; for a model, the
     /// choice of these settings.
-    #[must_use]
     pub fn most_exact(&self, settings: &Settings) -> &'static Choice {
         let own = |choice: &&Choice| (choice.among)(settings).is_ok();
         match (self.kind, self.choices.iter().rfind(own)) {
@@ -184,7 +178,6 @@ impl Choice {
     }
 
     /// The settings with this choice made.
-    #[must_use]
     pub fn of(&self, settings: &Settings) -> Settings {
         let mut settings = *settings;
         (self.set)(&mut settings);
@@ -192,14 +185,12 @@ impl Choice {
     }
 
     /// Whether it is the choice of these settings.
-    #[must_use]
     pub fn is(&self, settings: &Settings) -> bool {
         (self.is)(settings)
     }
 }
 
 /// A label inside a sentence: only names keep their capitals.
-#[must_use]
 pub fn uncapitalized(label: &str) -> String {
     const NAMES: [&str; 3] = ["Gouraud", "Phong", "Schlick"];
     let mut letters = label.chars();

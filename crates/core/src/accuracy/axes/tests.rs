@@ -86,36 +86,12 @@ fn a_filter_changes_nothing_without_a_texture_nor_a_highlight_without_ks() {
     use crate::scene::*;
     let source = MeshSource {
         positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]],
-        corners: (0..3).map(|position| SourceCorner { position, uv: NONE, normal: NONE }).collect(),
-        arities: vec![3],
-        polygon_parts: vec![0],
-        parts: vec![Part { name: String::new(), material: None }],
-        ..MeshSource::default()
+        ..MeshSource::of_polygons((0..3).map(SourceCorner::bare), vec![3])
     };
-    let model = Shared::new(Model {
-        name: String::new(),
-        source: None,
-        companions: Vec::new(),
-        options: LoadOptions::default(),
-        mesh: Mesh::new(source).unwrap(),
-        materials: Vec::new(),
-        edge_color: None,
-    });
-    let dull = Material {
-        ambient: [0.1; 3],
-        diffuse: [0.5; 3],
-        specular: [0.0; 3],
-        exponent: 1.0,
-        emission: [0.0; 3],
-    };
-    let mut scene = Scene::with_camera(Camera {
-        name: String::new(),
-        visible: true,
-        model: model.clone(),
-        material: MaterialChoice::Own(dull),
-        pose: Tracked::new(Pose::facing_minus_z(glam::DVec3::Z)),
-        lens: Lens::default(),
-    });
+    let model = Shared::new(Model::of_mesh("", Mesh::new(source).unwrap()));
+    let dull = Material::matte([0.1; 3], [0.5; 3]);
+    let camera = Camera::new("", model.clone(), MaterialChoice::Own(dull), glam::DVec3::Z);
+    let mut scene = Scene::with_camera(camera);
     let sense = |scene: &Scene, key: &str| {
         (Axis::named(key).unwrap().sense)(scene, &scene.first_view()).is_ok()
     };

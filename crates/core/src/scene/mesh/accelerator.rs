@@ -36,7 +36,6 @@ impl Mesh {
     ///
     /// # Panics
     /// If two types claim one place.
-    #[must_use]
     pub fn accelerator<T: Accelerator>(&self) -> &T {
         self.accelerator_or(|| T::build(self))
     }

@@ -59,7 +59,6 @@ impl Body {
 
 impl Mesh {
     /// Counts the closed bodies, and the bodies that are inside out.
-    #[must_use]
     pub fn closed_bodies(&self) -> ClosedBodies {
         let keys: Vec<u64> = self.shape.positions.par_iter().map(|place| key(*place)).collect();
         let outlines = self.outlines();
@@ -112,7 +111,6 @@ impl Mesh {
     }
 
     /// Finds the polygons with all of their file normals on the wrong side, in ascending order.
-    #[must_use]
     pub fn polygons_against_normals(&self) -> Vec<u32> {
         if !self.has_file_normals() {
             return Vec::new();
@@ -150,7 +148,7 @@ impl Body {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{MeshSource, NONE, Part, SourceCorner};
+    use crate::scene::{MeshSource, Part, SourceCorner};
 
     const CUBE: [[u32; 4]; 6] =
         [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
@@ -177,10 +175,7 @@ mod tests {
         }
 
         fn add_face(&mut self, face: [u32; 4]) {
-            let corner = |position| SourceCorner { position, uv: NONE, normal: NONE };
-            self.0.corners.extend(face.map(corner));
-            self.0.arities.push(4);
-            self.0.polygon_parts.push(0);
+            self.0.push_polygon(&face.map(SourceCorner::bare));
         }
 
         /// Returns the numbers of bodies, and of bodies inside out.

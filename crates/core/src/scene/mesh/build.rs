@@ -106,7 +106,6 @@ impl Mesh {
     }
 
     /// Returns whether `other` is the same mesh up to the crease angle; see [`Self::with_crease`].
-    #[must_use]
     pub fn shares_shape_with(&self, other: &Self) -> bool {
         Shared::same(&self.shape, &other.shape)
     }

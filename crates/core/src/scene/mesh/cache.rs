@@ -80,7 +80,6 @@ pub(crate) struct FoundOfShape {
 
 impl Mesh {
     /// Returns the corners of all polygons, in the order of the polygons.
-    #[must_use]
     pub fn corners(&self) -> &[Corner] {
         get_or_compute::<Vec<_>>(&self.found.corners, || {
             let vertices = &self.shape.corners;
@@ -95,14 +94,12 @@ impl Mesh {
     }
 
     /// Returns the triangles of all polygons, in the order of the polygons.
-    #[must_use]
     pub fn triangles(&self) -> &[Triangle] {
         get_or_compute::<Vec<_>>(&self.shape.found.triangles, || triangles(&self.outlines()))
     }
 
     /// Returns the polygon that a triangle belongs to.
     #[inline(always)]
-    #[must_use]
     pub fn polygon_of(&self, triangle: u32) -> u32 {
         if self.has_triangles_only() {
             return triangle;
@@ -132,7 +129,6 @@ impl Mesh {
     }
 
     /// Returns the number of triangles.
-    #[must_use]
     pub fn triangle_count(&self) -> usize {
         self.shape.corners.len() - 2 * self.polygon_count()
     }
@@ -153,14 +149,12 @@ impl Mesh {
 
     /// Returns the vertex of a corner.
     #[inline(always)]
-    #[must_use]
     pub fn vertex_of(&self, corner: usize) -> u32 {
         self.shape.corners[corner]
     }
 
     /// The point of a corner, as an index into [`Self::points`]; with a normal of the file if
     /// `source` asks for it and the polygon has one.
-    #[must_use]
     pub fn point_of(&self, corner: usize, source: NormalSource) -> u32 {
         match source {
             NormalSource::Computed => self.corners.smooth(&self.shape.corners, corner),
@@ -169,14 +163,12 @@ impl Mesh {
     }
 
     /// Whether each vertex has one computed normal, so points are numbered as vertices.
-    #[must_use]
     pub const fn has_smooth_vertices(&self) -> bool {
         self.corners.are_vertices()
     }
 
     /// Returns the uv coordinates of a triangle's corners; `None` if a corner lacks them.
     #[inline(always)]
-    #[must_use]
     pub fn triangle_uvs(&self, number: u32) -> Option<[[f32; 2]; 3]> {
         self.uvs_at(self.uv_places(number)?)
     }
@@ -211,7 +203,6 @@ impl Mesh {
 
     /// Returns the colours of a triangle's corners. The mesh must have colours.
     #[inline(always)]
-    #[must_use]
     pub fn triangle_colors(&self, number: u32) -> [[f32; 3]; 3] {
         each(self.triangle(number as usize), |corner| {
             self.shape.colors[self.shape.corners[corner] as usize]
@@ -220,7 +211,6 @@ impl Mesh {
 
     /// Returns the unit normal of each polygon, by Newell's method; (0, 0, 1) for a polygon without
     /// area.
-    #[must_use]
     pub fn polygon_normals(&self) -> &[[f32; 3]] {
         get_or_compute::<Vec<_>>(&self.shape.found.normals, || {
             let outlines = self.outlines();
@@ -230,7 +220,6 @@ impl Mesh {
     }
 
     /// Returns the data for flat shading of each polygon.
-    #[must_use]
     pub fn facets(&self) -> &[Facet] {
         get_or_compute::<Vec<_>>(&self.shape.found.facets, || {
             let facet = |(normal, polygon): (&[f32; 3], u32)| Facet {
@@ -244,19 +233,16 @@ impl Mesh {
 
     /// Returns whether the polygons form closed surfaces: every edge is traversed as often in one
     /// direction as in the other.
-    #[must_use]
     pub fn is_closed(&self) -> bool {
         *get_or_compute(&self.shape.found.closed, || is_closed(&self.outlines()))
     }
 
     /// Returns the edges of the mesh: the sides of all polygons, each listed once.
-    #[must_use]
     pub fn edges(&self) -> &[Edge] {
         self.edge_table().edges()
     }
 
     /// Returns the polygons that have this edge as a side.
-    #[must_use]
     pub fn edge_polygons(&self, edge: &Edge) -> &[u32] {
         self.edge_table().polygons(edge)
     }

@@ -63,7 +63,7 @@ const fn mixed(x: u64) -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use crate::scene::{Mesh, MeshSource, NONE, Part, SourceCorner};
+    use crate::scene::{Mesh, MeshSource, SourceCorner};
 
     /// The faces of a cube from -1 to 1, seen from outside.
     const CUBE: [[u32; 4]; 6] =
@@ -74,14 +74,12 @@ mod tests {
     }
 
     fn mesh(positions: Vec<[f32; 3]>, faces: &[[u32; 4]]) -> Mesh {
-        let corner = |position| SourceCorner { position, uv: NONE, normal: NONE };
         Mesh::new(MeshSource {
             positions,
-            corners: faces.iter().flatten().map(|i| corner(*i)).collect(),
-            arities: vec![4; faces.len()],
-            polygon_parts: vec![0; faces.len()],
-            parts: vec![Part { name: "it".to_owned(), material: None }],
-            ..MeshSource::default()
+            ..MeshSource::of_polygons(
+                faces.iter().flatten().copied().map(SourceCorner::bare),
+                vec![4; faces.len()],
+            )
         })
         .unwrap()
     }

@@ -66,6 +66,26 @@ pub struct MeshSource {
     pub smoothing: Smoothing,
 }
 
+impl MeshSource {
+    /// Creates one part with polygons of these corners and corner counts, without vertices.
+    pub fn of_polygons(corners: impl IntoIterator<Item = SourceCorner>, arities: Vec<u32>) -> Self {
+        Self {
+            corners: corners.into_iter().collect(),
+            polygon_parts: vec![0; arities.len()],
+            arities,
+            parts: vec![Part { name: String::new(), material: None }],
+            ..Self::default()
+        }
+    }
+
+    /// Adds a polygon to the first part.
+    pub fn push_polygon(&mut self, corners: &[SourceCorner]) {
+        self.corners.extend_from_slice(corners);
+        self.arities.push(index(corners.len()));
+        self.polygon_parts.push(0);
+    }
+}
+
 /// A corner of a polygon in the file's numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct SourceCorner {
@@ -75,6 +95,13 @@ pub struct SourceCorner {
     pub uv: u32,
     /// The corner's normal, or [`NONE`].
     pub normal: u32,
+}
+
+impl SourceCorner {
+    /// Returns a corner without texture coordinates and without a normal.
+    pub const fn bare(position: u32) -> Self {
+        Self { position, uv: NONE, normal: NONE }
+    }
 }
 
 /// A run of polygons with the same `o`, `g` and `usemtl` in a file.
@@ -225,19 +252,16 @@ impl PartialEq for Mesh {
 impl Mesh {
     /// Returns the origin of positions, bounds and mean in object space. It is 0 unless the model
     /// is far from its origin.
-    #[must_use]
     pub fn offset(&self) -> DVec3 {
         self.shape.offset
     }
 
     /// Returns the transformation from the space of the positions to object space.
-    #[must_use]
     pub fn object_from_mesh(&self) -> DMat4 {
         DMat4::from_translation(self.shape.offset)
     }
 
     /// Returns the positions of all vertices, relative to [`Self::offset`].
-    #[must_use]
     pub fn positions(&self) -> &[[f32; 3]] {
         &self.shape.positions
     }
@@ -249,19 +273,16 @@ impl Mesh {
     }
 
     /// Returns the vertices that no face uses, ascending.
-    #[must_use]
     pub fn unused_vertices(&self) -> &[u32] {
         &self.shape.unused
     }
 
     /// Returns red, green and blue of each vertex; empty if the file has no colours.
-    #[must_use]
     pub fn colors(&self) -> &[[f32; 3]] {
         &self.shape.colors
     }
 
     /// Returns all texture coordinates.
-    #[must_use]
     pub fn uvs(&self) -> &[[f32; 2]] {
         &self.shape.uvs
     }
@@ -269,57 +290,48 @@ impl Mesh {
     /// Returns the vertices with their normals. The first points have the order of
     /// [`Self::positions`] and computed normals, one for each vertex. Further computed normals
     /// follow, then the file's normals.
-    #[must_use]
     pub fn points(&self) -> &[Point] {
         &self.points
     }
 
     /// Returns the number of polygons.
-    #[must_use]
     pub fn polygon_count(&self) -> usize {
         self.shape.polygon_parts.len()
     }
 
     /// Returns the corners of one polygon.
-    #[must_use]
     pub fn polygon(&self, polygon: u32) -> &[Corner] {
         &self.corners()[self.corners_of(polygon)]
     }
 
     /// Returns the range of one polygon's corners in [`Self::corners`].
-    #[must_use]
     pub fn corners_of(&self, polygon: u32) -> std::ops::Range<usize> {
         self.shape.starts[polygon as usize] as usize
             ..self.shape.starts[polygon as usize + 1] as usize
     }
 
     /// Returns whether a corner of a polygon has texture coordinates.
-    #[must_use]
     pub fn has_uvs(&self, polygon: u32) -> bool {
         let uvs = self.shape.corner_uvs.get(self.corners_of(polygon));
         uvs.is_some_and(|uvs| uvs.iter().any(|uv| *uv != NONE))
     }
 
     /// Returns the part that each polygon belongs to.
-    #[must_use]
     pub fn polygon_parts(&self) -> &[u32] {
         &self.shape.polygon_parts
     }
 
     /// Returns the polygons without area, in ascending order; they have no normal.
-    #[must_use]
     pub fn without_area(&self) -> &[u32] {
         &self.shape.without_area
     }
 
     /// Returns the mean of a polygon's corners.
-    #[must_use]
     pub fn polygon_centre(&self, polygon: u32) -> DVec3 {
         mean(self.outlines().of(polygon as usize))
     }
 
     /// Returns the range of one polygon's triangles in [`Self::triangles`].
-    #[must_use]
     pub fn triangles_of(&self, polygon: u32) -> std::ops::Range<usize> {
         // Every earlier polygon has two triangles less than it has corners.
         let corners = self.corners_of(polygon);
@@ -328,44 +340,37 @@ impl Mesh {
     }
 
     /// Returns the runs of the file's `o`, `g` and `usemtl`.
-    #[must_use]
     pub fn parts(&self) -> &[Part] {
         &self.shape.parts
     }
 
     /// Returns the file's names for a part; all `None` if the mesh is not from a file.
-    #[must_use]
     pub fn part_names(&self, part: u32) -> &PartNames {
         const NAMELESS: &PartNames = &PartNames { object: None, group: None, material: None };
         self.shape.part_names.get(part as usize).unwrap_or(NAMELESS)
     }
 
     /// Returns whether any polygon has normals of the file.
-    #[must_use]
     pub const fn has_file_normals(&self) -> bool {
         !self.corners.filed.is_empty()
     }
 
     /// Returns whether every polygon has normals of the file.
-    #[must_use]
     pub const fn has_file_normals_only(&self) -> bool {
         self.has_file_normals() && self.corners.filed_only
     }
 
     /// Returns the rule for sharing computed normals between polygons.
-    #[must_use]
     pub const fn smoothing(&self) -> &Smoothing {
         &self.smoothing
     }
 
     /// Returns the extent of [`Self::used_positions`]; `None` without vertices.
-    #[must_use]
     pub fn bounds(&self) -> Option<Bounds> {
         self.shape.bounds
     }
 
     /// Returns the mean of [`Self::used_positions`], the target of orbit cameras.
-    #[must_use]
     pub fn mean(&self) -> DVec3 {
         self.shape.mean
     }
@@ -399,7 +404,6 @@ pub fn newell(corners: impl Iterator<Item = DVec3> + Clone) -> DVec3 {
 }
 
 /// Converts three numbers of a file to double precision.
-#[must_use]
 pub fn dvec3(v: [f32; 3]) -> DVec3 {
     DVec3::from_array(v.map(f64::from))
 }
@@ -419,10 +423,6 @@ pub(super) fn index(i: usize) -> u32 {
 mod tests {
     use super::*;
 
-    fn corner(position: u32) -> SourceCorner {
-        SourceCorner { position, uv: NONE, normal: NONE }
-    }
-
     /// Builds a roof: two squares that meet at a right angle along the side from vertex 0 to
     /// vertex 1.
     fn roof() -> MeshSource {
@@ -435,11 +435,7 @@ mod tests {
                 [1.0, 0.0, 0.0],
                 [1.0, 0.0, 1.0],
             ],
-            corners: [0, 3, 2, 1, 0, 1, 5, 4].map(corner).to_vec(),
-            arities: vec![4, 4],
-            polygon_parts: vec![0, 0],
-            parts: vec![Part { name: "roof".to_owned(), material: None }],
-            ..MeshSource::default()
+            ..MeshSource::of_polygons([0, 3, 2, 1, 0, 1, 5, 4].map(SourceCorner::bare), vec![4, 4])
         }
     }
 
@@ -463,7 +459,7 @@ mod tests {
     fn opposite_normals_give_each_corner_its_own_polygons_normal() {
         let mut source = roof();
         // The same square twice, seen from opposite sides.
-        source.corners = [0, 3, 2, 1, 1, 2, 3, 0].map(corner).to_vec();
+        source.corners = [0, 3, 2, 1, 1, 2, 3, 0].map(SourceCorner::bare).to_vec();
         let mesh = Mesh::new(source).unwrap();
         for polygon in 0..2 {
             for corner in mesh.polygon(polygon) {

@@ -18,7 +18,6 @@ const FAR: f64 = 16.0;
 ///
 /// The offset is a multiple of a power of ten, so differences of numbers with few decimals have few
 /// decimals, too.
-#[must_use]
 pub fn split_positions(positions: &[[f64; 3]], corners: &[u32]) -> (DVec3, Vec<[f32; 3]>) {
     let offset = offset(bounds(positions, corners));
     #[expect(clippy::cast_possible_truncation, reason = "the rounding that is meant")]

@@ -25,13 +25,11 @@ pub struct CornerLists {
 
 impl CornerLists {
     /// Returns the uv of a corner, or [`NONE`].
-    #[must_use]
     pub fn uv(&self, corner: usize) -> u32 {
         self.uvs.get(corner).copied().unwrap_or(NONE)
     }
 
     /// Returns the normal of a corner, or [`NONE`].
-    #[must_use]
     pub fn normal(&self, corner: usize) -> u32 {
         self.normals.get(corner).copied().unwrap_or(NONE)
     }

@@ -2,7 +2,7 @@
 //!
 //! The box has no texture coordinates and no file normals, so the object's material shows.
 
-use crate::scene::{Mesh, MeshSource, NONE, Part, SourceCorner};
+use crate::scene::{Mesh, MeshSource, SourceCorner};
 
 /// The sides of the box that single precision can draw.
 const SIDES: std::ops::RangeInclusive<f64> = 1e-30..=1e30;
@@ -14,7 +14,6 @@ const FACES: [[u32; 4]; 6] =
 
 impl Mesh {
     /// Builds a cube of this side around the origin, as a replacement for a missing file.
-    #[must_use]
     pub fn placeholder(side: f64) -> Self {
         let half = side.clamp(*SIDES.start(), *SIDES.end()) / 2.0;
         let along = |corner: u32, bit: u32| if corner >> bit & 1 == 1 { half } else { -half };
@@ -23,21 +22,16 @@ impl Mesh {
                 .as_vec3()
                 .to_array()
         };
-        let corner = |position: u32| SourceCorner { position, uv: NONE, normal: NONE };
+        let corners = FACES.as_flattened().iter().copied().map(SourceCorner::bare);
         let source = MeshSource {
             positions: (0..8).map(position).collect(),
-            corners: FACES.as_flattened().iter().copied().map(corner).collect(),
-            arities: vec![4; FACES.len()],
-            polygon_parts: vec![0; FACES.len()],
-            parts: vec![Part { name: String::new(), material: None }],
-            ..MeshSource::default()
+            ..MeshSource::of_polygons(corners, vec![4; FACES.len()])
         };
         let mesh = Self::new(source).expect("every index of a box is in range");
         Self { is_placeholder: true, ..mesh }
     }
 
     /// Returns whether the mesh is a box that replaces a missing file.
-    #[must_use]
     pub const fn is_placeholder(&self) -> bool {
         self.is_placeholder
     }

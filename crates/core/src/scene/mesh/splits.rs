@@ -20,7 +20,6 @@ const BUDGET: usize = 50_000_000;
 impl Mesh {
     /// Counts the edges that corners of other faces split. The count may be too low in meshes with
     /// very many edges that have a face on one side only.
-    #[must_use]
     pub fn split_edges(&self) -> usize {
         let open: Vec<&Edge> =
             self.edges().iter().filter(|edge| self.edge_polygons(edge).len() == 1).collect();

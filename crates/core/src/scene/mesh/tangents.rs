@@ -80,7 +80,6 @@ impl Geometry<LibmOps> for WithUvs<'_> {
 
 impl Mesh {
     /// Returns the tangents of each triangle's corners, for one kind of normals.
-    #[must_use]
     pub fn tangents(&self, source: NormalSource) -> &[CornerTangents] {
         let cell = match source {
             NormalSource::Computed => &self.found.tangents[0],
@@ -101,7 +100,7 @@ impl Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{MeshSource, Part, SourceCorner};
+    use crate::scene::{MeshSource, SourceCorner};
 
     /// Builds a square in the plane z = 0. Its second triangle is mirrored on the texture.
     fn square() -> Mesh {
@@ -109,11 +108,10 @@ mod tests {
         Mesh::new(MeshSource {
             positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]],
             uvs: vec![[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [2.0, 1.0]],
-            corners: [(0, 0), (1, 1), (2, 2), (0, 0), (2, 2), (3, 3)].map(corner).to_vec(),
-            arities: vec![3, 3],
-            polygon_parts: vec![0, 0],
-            parts: vec![Part { name: String::new(), material: None }],
-            ..MeshSource::default()
+            ..MeshSource::of_polygons(
+                [(0, 0), (1, 1), (2, 2), (0, 0), (2, 2), (3, 3)].map(corner),
+                vec![3, 3],
+            )
         })
         .unwrap()
     }

@@ -11,17 +11,13 @@
 //! with [`SIDE`] texels a side. It follows the formula to 1/255: rounding adds half a step of a
 //! byte, and interpolation 0.05 steps, since the second derivative is at most 6 / (R/2)^2.
 
-use std::path::PathBuf;
-
 use glam::DVec3;
 
 use super::solids::{AROUND, Builder, turn};
 use crate::base::Shared;
 use crate::base::color::byte;
 use crate::base::image::{Picture, Size};
-use crate::scene::{
-    FileMaterial, MapKind, Material, Part, SurfaceMap, SurfaceMaps, Texture, Undrawn, Wrap,
-};
+use crate::scene::{FileMaterial, MapKind, Material, Part, SurfaceMap, SurfaceMaps, Texture, Wrap};
 
 /// The number of texels in a row of the map.
 const SIDE: usize = 256;
@@ -64,32 +60,13 @@ pub(super) fn materials() -> Vec<FileMaterial> {
         let grey = byte(opacity(libm::hypot(place(i % SIDE), place(i / SIDE))));
         *pixel = [grey, grey, grey, 255];
     }
-    let texture = Shared::new(Texture {
-        source: PathBuf::from("own:ground"),
-        picture: picture.into(),
-        wrap: Wrap::Clamp,
-        offset: [0.0; 2],
-        scale: [1.0; 2],
-    });
+    let texture = Texture { wrap: Wrap::Clamp, ..Texture::new("own:ground", picture) };
+    let texture = Shared::new(texture);
     let fading = SurfaceMaps::from([(MapKind::Opacity, SurfaceMap { texture, gain: 1.0 })]);
     // Under the five lights of the first scene, this is a medium grey.
-    let material = Material {
-        ambient: [0.1; 3],
-        diffuse: [0.25; 3],
-        specular: [0.0; 3],
-        exponent: 1.0,
-        emission: [0.0; 3],
-    };
-    let named = |name: &str, maps| FileMaterial {
-        name: name.to_owned(),
-        material,
-        opacity: 1.0,
-        texture: None,
-        maps,
-        unlit: false,
-        undrawn: Undrawn::new(),
-    };
-    vec![named("ground", SurfaceMaps::new()), named("rim", fading)]
+    let material = Material::matte([0.1; 3], [0.25; 3]);
+    let rim = FileMaterial { maps: fading, ..FileMaterial::new("rim", material) };
+    vec![FileMaterial::new("ground", material), rim]
 }
 
 #[cfg(test)]

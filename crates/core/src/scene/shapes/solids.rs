@@ -42,13 +42,8 @@ impl Builder {
 
     /// Adds a polygon of corners (vertex, uv, normal), counter-clockwise as seen from outside.
     pub(super) fn polygon(&mut self, corners: &[[u32; 3]]) {
-        self.source.corners.extend(corners.iter().map(|&[position, uv, normal]| SourceCorner {
-            position,
-            uv,
-            normal,
-        }));
-        self.source.arities.push(last(corners.len() + 1));
-        self.source.polygon_parts.push(0);
+        let corner = |&[position, uv, normal]: &[u32; 3]| SourceCorner { position, uv, normal };
+        self.source.push_polygon(&corners.iter().map(corner).collect::<Vec<_>>());
     }
 
     pub(super) fn mesh(mut self, name: &str) -> Mesh {

@@ -9,25 +9,18 @@ use std::fmt::Write;
 
 use crate::export::look::{Looks, file_material, tint};
 use crate::export::names::{self, on_one_line};
-use marraztu_core::scene::{MaterialChoice, Object, Surface};
+use marraztu_core::scene::{MaterialChoice, Object, PartNames, Surface};
 
 /// The names in use, and the statements in effect.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct Names {
     /// Whether the file has only one object of the scene, which then needs no name.
     alone: bool,
     objects: names::Names,
     groups: names::Names,
-    now: Called,
+    /// The statements in effect for the last face.
+    now: PartNames,
     of_object: OfObject,
-}
-
-/// The statements in effect for a face.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-struct Called {
-    object: Option<String>,
-    group: Option<String>,
-    material: Option<String>,
 }
 
 /// The names within one object of the scene.
@@ -38,7 +31,7 @@ struct OfObject {
     /// Exported names, by the names in the file.
     objects: HashMap<Option<String>, Option<String>>,
     groups: HashMap<String, String>,
-    parts: HashMap<u32, Called>,
+    parts: HashMap<u32, PartNames>,
     /// The part of the last face.
     last: Option<u32>,
 }
@@ -46,13 +39,7 @@ struct OfObject {
 impl Names {
     /// Creates the names for a file with this number of objects of the scene.
     pub(super) fn new(objects: usize) -> Self {
-        Self {
-            alone: objects == 1,
-            objects: names::Names::default(),
-            groups: names::Names::default(),
-            now: Called::default(),
-            of_object: OfObject::default(),
-        }
+        Self { alone: objects == 1, ..Self::default() }
     }
 
     /// Begins an object of the scene. A name from the user replaces the name of the file's only
@@ -70,7 +57,7 @@ impl Names {
     pub(super) fn object_without_faces(&mut self, object: &Object, text: &mut String) {
         if object.model.mesh.polygon_count() == 0 && !self.alone {
             let name = self.objects.take(&on_one_line(&object.name));
-            self.call(Called { object: Some(name), group: None, ..self.now.clone() }, text);
+            self.call(PartNames { object: Some(name), group: None, ..self.now.clone() }, text);
         }
     }
 
@@ -96,8 +83,8 @@ impl Names {
         self.call(called, text);
     }
 
-    fn call(&mut self, called: Called, text: &mut String) {
-        let Called { object, group, material } = &called;
+    fn call(&mut self, called: PartNames, text: &mut String) {
+        let PartNames { object, group, material } = &called;
         // In OBJ only a new object ends a group.
         let ends_group = group.is_none() && self.now.group.is_some();
         if let Some(object) = object
@@ -119,7 +106,7 @@ impl Names {
         self.now = called;
     }
 
-    fn called(&mut self, object: &Object, part: u32, looks: &mut Looks) -> Called {
+    fn called(&mut self, object: &Object, part: u32, looks: &mut Looks) -> PartNames {
         let names = object.model.mesh.part_names(part);
         // The object's name is taken once and reused by its other parts.
         let own = match self.of_object.objects.get(&names.object) {
@@ -148,7 +135,7 @@ impl Names {
                 Some(looks.all[number].name.clone())
             }
         };
-        Called { object: own, group, material }
+        PartNames { object: own, group, material }
     }
 
     /// Returns the exported name of an object of the file.

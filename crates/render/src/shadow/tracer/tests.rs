@@ -7,9 +7,7 @@ use super::*;
 use crate::frame::shadows::CasterPart;
 use marraztu_core::base::Shared;
 use marraztu_core::base::rng::Rng;
-use marraztu_core::scene::{
-    ItemId, LoadOptions, Mesh, MeshSource, Model, NONE, ObjectId, Part, SourceCorner,
-};
+use marraztu_core::scene::{ItemId, Mesh, MeshSource, Model, ObjectId, SourceCorner};
 
 type Point = [i128; 3];
 
@@ -32,26 +30,13 @@ fn stands_between([a, b, c]: [Point; 3], p: Point, l: Point) -> bool {
 
 fn mesh_of(triangles: &[[Point; 3]]) -> Shared<Model> {
     let count = u32::try_from(triangles.len()).unwrap();
-    let corner = |position| SourceCorner { position, uv: NONE, normal: NONE };
     let source = MeshSource {
         positions: triangles.iter().flatten().map(|p| p.map(|x| x as f32)).collect(),
-        corners: (0..3 * count).map(corner).collect(),
-        arities: vec![3; triangles.len()],
-        polygon_parts: vec![0; triangles.len()],
-        parts: vec![Part { name: "part".to_owned(), material: None }],
-        ..MeshSource::default()
+        ..MeshSource::of_polygons((0..3 * count).map(SourceCorner::bare), vec![3; triangles.len()])
     };
     let mesh = Mesh::new(source).expect("a good mesh");
     rayon::scope(|_| _ = mesh.bvh());
-    Shared::new(Model {
-        name: "mesh".to_owned(),
-        source: None,
-        companions: Vec::new(),
-        options: LoadOptions::default(),
-        mesh,
-        materials: Vec::new(),
-        edge_color: None,
-    })
+    Shared::new(Model::of_mesh("mesh", mesh))
 }
 
 fn shadows_of(casters: &[(Vec<[Point; 3]>, Point)], light: Point) -> Shadows {

@@ -455,10 +455,9 @@ mod tests {
         for _ in 0..3000 {
             let size = Size::new(1 + rng.index(40), 1 + rng.index(40));
             let pixels = (0..size.area()).map(|i| (i as f32).to_bits().to_le_bytes());
-            let picture = Picture::from_pixels(size, pixels.collect()).unwrap().into();
+            let picture = Picture::from_pixels(size, pixels.collect()).unwrap();
             let wrap = rng.one_of(&[Wrap::Repeat, Wrap::Clamp]);
-            let (offset, scale) = ([0.0; 2], [1.0; 2]);
-            let texture = Texture { source: "counted".into(), picture, wrap, offset, scale };
+            let texture = Texture { wrap, ..Texture::new("counted", picture) };
             let levels = std::slice::from_ref(&texture);
             let sampler = Sampler::new(levels, Filter::Bilinear).unwrap();
             let sides = [size.width as f64, size.height as f64];
