@@ -10,7 +10,7 @@
 //!
 //! Alternatives selected by the settings are variants of the same kernels: each `rule` of coverage
 //! and each `depth_format` is a type that kernels are compiled for. `vertex_variants` transforms
-//! vertices by each arithmetic; `edges_in_floats` and `scan_lines` cover blocks by other rules.
+//! vertices by other arithmetics; `edges_in_floats` and `scan_lines` cover blocks by other rules.
 
 pub(crate) mod alpha_test;
 mod beyond;

@@ -1,18 +1,17 @@
-//! Transforms the vertices of a mesh: in f64 or f32, snapped to a grid or not.
+//! Variants of transforming vertices: in f32, snapped to another grid, or not snapped.
 //!
-//! Each variant is a loop of plain arithmetic over rows of coordinates, compiled for each
-//! instruction set: in f64, eight vertices at once. Coarser subpixels are multiples of the
-//! default's, so only positions change.
+//! Like the default, each is a loop of plain arithmetic over rows of coordinates, compiled for each
+//! instruction set. Coarser subpixels are multiples of the default's, so only positions change.
 
 use crate::simd::dispatch;
-use fearless_simd::Level;
+use fearless_simd::{Level, Simd};
 
+use super::vertices;
 use crate::accel::DrawOrder;
 use crate::frame::variants::Variants;
 use crate::screen::clip::{Screen, ScreenVertex, snapped};
 use crate::screen::coverage::{SUBPIXELS, Snapped};
 use marraztu_core::accuracy::{Subpixels, VertexArithmetic};
-use marraztu_core::base::math::each;
 
 /// Transforms vertices of a mesh to the screen, from number `first` on.
 pub(crate) fn transform(
@@ -24,22 +23,10 @@ pub(crate) fn transform(
     out: &mut [ScreenVertex],
 ) {
     if variants.vertices == VertexArithmetic::F64 {
-        each_vertex(
-            level,
-            (order, first),
-            out,
-            #[inline(always)]
-            |at| screen.vertex(screen.clip(each(at, f64::from))),
-        );
+        vertices::transform(level, screen, order, first, out);
     } else {
-        let screen = Screen32::new(screen);
-        each_vertex(
-            level,
-            (order, first),
-            out,
-            #[inline(always)]
-            |at| screen.vertex(screen.clip(at)),
-        );
+        let (screen, rows) = (Screen32::new(screen), rows(order, first, out.len()));
+        dispatch!(level, simd => chunk(simd, &screen, rows, out));
     }
     if matches!(variants.subpixels, Subpixels::Bits0 | Subpixels::Bits4) {
         dispatch!(level, _ => coarse(variants, out));
@@ -55,37 +42,40 @@ pub(crate) fn to_pixels(
     first: usize,
     out: &mut [[f32; 2]],
 ) {
+    let rows = rows(order, first, out.len());
     if variants.vertices == VertexArithmetic::F64 {
-        each_vertex(
-            level,
-            (order, first),
-            out,
-            #[inline(always)]
-            |at| screen.pixels_seen(screen.clip(each(at, f64::from))),
-        );
+        dispatch!(level, simd => pixels(simd, screen, rows, out));
     } else {
         let screen = Screen32::new(screen);
-        each_vertex(
-            level,
-            (order, first),
-            out,
-            #[inline(always)]
-            |at| screen.pixels_seen(screen.clip(at)),
-        );
+        dispatch!(level, simd => pixels32(simd, &screen, rows, out));
     }
 }
 
-/// Computes a value of each of some vertices of a mesh, from number `first` on, from its position.
-fn each_vertex<T>(
-    level: Level,
-    (order, first): (&DrawOrder, usize),
-    out: &mut [T],
-    value: impl Fn([f32; 3]) -> T,
-) {
-    let [x, y, z] = [&order.x, &order.y, &order.z].map(|row| &row[first..][..out.len()]);
-    dispatch!(level, _ => for (((out, x), y), z) in out.iter_mut().zip(x).zip(y).zip(z) {
-        *out = value([*x, *y, *z]);
-    });
+/// Returns the coordinates of some vertices.
+fn rows(order: &DrawOrder, first: usize, count: usize) -> [&[f32]; 3] {
+    [&order.x, &order.y, &order.z].map(|row| &row[first..first + count])
+}
+
+#[inline(always)]
+fn chunk<S: Simd>(_: S, screen: &Screen32, [x, y, z]: [&[f32]; 3], out: &mut [ScreenVertex]) {
+    for (((out, x), y), z) in out.iter_mut().zip(x).zip(y).zip(z) {
+        *out = screen.vertex([*x, *y, *z]);
+    }
+}
+
+#[inline(always)]
+fn pixels<S: Simd>(_: S, screen: &Screen, [x, y, z]: [&[f32]; 3], out: &mut [[f32; 2]]) {
+    for (((out, x), y), z) in out.iter_mut().zip(x).zip(y).zip(z) {
+        *out = screen.pixels_seen(screen.clip([f64::from(*x), f64::from(*y), f64::from(*z)]));
+    }
+}
+
+#[inline(always)]
+fn pixels32<S: Simd>(_: S, screen: &Screen32, [x, y, z]: [&[f32]; 3], out: &mut [[f32; 2]]) {
+    for (((out, x), y), z) in out.iter_mut().zip(x).zip(y).zip(z) {
+        let [x, y] = screen.pixels(screen.clip([*x, *y, *z]));
+        *out = [x - screen.shift[0], y - screen.shift[1]];
+    }
 }
 
 /// Snaps vertices to coarser subpixels, if the settings choose them.
@@ -139,13 +129,8 @@ impl Screen32 {
     }
 
     #[inline(always)]
-    fn pixels_seen(&self, clip: [f32; 4]) -> [f32; 2] {
-        let [x, y] = self.pixels(clip);
-        [x - self.shift[0], y - self.shift[1]]
-    }
-
-    #[inline(always)]
-    fn vertex(&self, clip: [f32; 4]) -> ScreenVertex {
+    fn vertex(&self, place: [f32; 3]) -> ScreenVertex {
+        let clip = self.clip(place);
         let [x, y, z, w] = clip;
         let [gx, gy] = [self.guard[0] * w, self.guard[1] * w];
         let inside = (w - z >= 0.0)

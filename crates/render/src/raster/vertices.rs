@@ -1,10 +1,14 @@
-//! The vertices of a frame on the screen, fetched sixteen at a time.
+//! Transforms the vertices of a mesh to the screen, and fetches them sixteen at a time.
+//!
+//! The loop is plain arithmetic over rows of coordinates, compiled for each instruction set. It
+//! handles eight vertices at once with the same bits as [`Screen::vertex`].
 
-use fearless_simd::{Simd, SimdBase as _, SimdCombine as _, i32x4, i32x16};
+use crate::simd::dispatch;
+use fearless_simd::{Level, Simd, SimdBase as _, SimdCombine as _, i32x4, i32x16};
 
 use super::hits::PACK;
-use crate::accel::DrawTriangle;
-use crate::screen::clip::ScreenVertex;
+use crate::accel::{DrawOrder, DrawTriangle};
+use crate::screen::clip::{Screen, ScreenVertex};
 
 /// The vertices of a frame on the screen.
 #[derive(Debug, Default)]
@@ -15,6 +19,26 @@ pub(crate) struct Vertices {
     pub(crate) fine: Vec<ScreenVertex>,
     /// The vertices in pixels before snapping, if the rule of coverage needs them.
     pub(crate) unsnapped: Vec<[f32; 2]>,
+}
+
+/// Transforms vertices of a mesh to the screen, starting at number `first`.
+pub(crate) fn transform(
+    level: Level,
+    screen: &Screen,
+    order: &DrawOrder,
+    first: usize,
+    out: &mut [ScreenVertex],
+) {
+    let rows = first..first + out.len();
+    let [x, y, z] = [&order.x, &order.y, &order.z].map(|row| &row[rows.clone()]);
+    dispatch!(level, simd => chunk(simd, screen, [x, y, z], out));
+}
+
+#[inline(always)]
+fn chunk<S: Simd>(_: S, screen: &Screen, [x, y, z]: [&[f32]; 3], out: &mut [ScreenVertex]) {
+    for (((out, x), y), z) in out.iter_mut().zip(x).zip(y).zip(z) {
+        *out = screen.vertex(screen.clip([f64::from(*x), f64::from(*y), f64::from(*z)]));
+    }
 }
 
 /// Fetches x, y, depth and 1/w of sixteen vertices by their numbers. A number beyond the last one
