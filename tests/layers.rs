@@ -170,7 +170,7 @@ fn ids_name_what_the_editor_picks_and_normals_are_those_that_light_uses() {
                 .map(|at| (ItemId::Object(layers.names.objects[at].object), polygon - 1));
             assert_eq!(shown, picked, "{name} {x},{y}");
             let Some((ItemId::Object(object), polygon)) = picked else { continue };
-            // The part and its material are those of the polygon.
+            // The polygon has this part, and the part this material.
             let object = shot.scene.objects.get(object).unwrap();
             let part = object.model.mesh.polygon_parts()[polygon as usize];
             let named = usize::try_from(layers.ids(Layer::Part)[i]).unwrap() - 1;
@@ -226,7 +226,7 @@ fn layers_are_the_same_for_any_settings_and_number_of_threads_and_keep_the_last_
             assert_eq!(alone.values.len(), 1);
             assert!(alone.values.get(&layer) == once.values.get(&layer), "{name}: {layer:?}");
         }
-        // The picture and its damage are those of before.
+        // The picture and its damage are as before.
         let mut renderer = Renderer::default();
         let plan = plan_frame(&shot);
         let picture = renderer.render(&plan).clone();

@@ -162,8 +162,8 @@ fn faults(name: &str, text: &str) -> Vec<&'static str> {
     faults
 }
 
-/// The files that the modules of a crate lead to, by `mod` statements that rustfmt sees: those that
-/// stand at the beginning of a line, and so in no macro.
+/// The files that the modules of a crate lead to, by `mod` statements that rustfmt sees: at
+/// the beginning of a line, and so in no macro.
 fn seen_by_rustfmt(file: &Path, seen: &mut BTreeSet<PathBuf>) {
     seen.insert(file.to_owned());
     let text = std::fs::read_to_string(file).expect("a module has a file");

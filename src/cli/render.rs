@@ -364,7 +364,7 @@ fn place_camera(stage: &mut Stage, pose: Pose, half_angle: Option<f64>) -> Resul
     stage.change(framing::from_pose(&stage.scene, &stage.view, pose, half_angle))
 }
 
-/// Checks that there is a light in each of these slots, of which `suits` is true.
+/// Checks that each of these slots has a light that `suits`.
 fn check_slots(
     stage: &Stage,
     slots: &BTreeSet<u32>,

@@ -141,7 +141,7 @@ pub extern "C" fn work() -> usize {
     })
 }
 
-/// Returns the milliseconds until there is work, or -1 if there is none before the next request.
+/// Returns the milliseconds until the next work, or -1 if only a request brings some.
 #[unsafe(no_mangle)]
 pub extern "C" fn rest() -> f64 {
     with(|page| {

@@ -104,7 +104,7 @@ fn describe_mesh(mesh: &Mesh, text: &mut Text) {
         Some(bounds) => {
             let place =
                 |p: glam::DVec3| format!("({}, {}, {})", short(p.x), short(p.y), short(p.z));
-            // Positions are stored relative to the offset; the box shows those of the file.
+            // Positions are stored relative to the offset; the box shows the file's.
             let offset = mesh.offset();
             let [min, max] = [bounds.min, bounds.max].map(|p| place(p + offset));
             text.line("box", &format!("{min} to {max}"));

@@ -1,5 +1,5 @@
-//! Models that open alone: those of the command line, and those dropped on the untouched first
-//! scene or opened from the greeting.
+//! Models that open alone: from the command line, from the greeting, or dropped on the untouched
+//! first scene.
 //!
 //! They are shown as `render` shows them: without the first scene's objects, framed and lit. The
 //! key `f` and the menu add a model to the current scene, even if that is the first one.

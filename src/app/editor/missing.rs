@@ -139,7 +139,7 @@ impl App {
 /// Replacements of models and placeholders.
 #[derive(Default)]
 pub(super) struct Replacements {
-    /// The models, and those that replace them.
+    /// The models, each with its replacement.
     pub(super) models: Vec<(Shared<Model>, Shared<Model>)>,
     /// The paths of missing textures, and the textures found.
     textures: Vec<(PathBuf, Shared<Texture>)>,

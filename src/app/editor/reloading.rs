@@ -25,7 +25,7 @@ use marraztu_io::{self as io, LoadError, is_example};
 const PAUSE: Duration = Duration::from_millis(500);
 
 impl App {
-    /// Reads the models of the scene again: all of them, or those of these files.
+    /// Reads the models of the scene again: all of them, or only from these files.
     pub(crate) fn reload_models(&mut self, ctx: &Context, only: Option<&BTreeSet<PathBuf>>) {
         let mut wanted: Vec<(PathBuf, Shared<Model>)> = Vec::new();
         // Objects that share a model have it read once.

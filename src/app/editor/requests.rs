@@ -88,7 +88,7 @@ impl App {
         false
     }
 
-    /// Describes what the next Esc does if nothing else is open.
+    /// Describes the next Esc's effect, with all dialogs closed.
     pub(super) fn next_escape(&self) -> &'static str {
         if self.state.lab.away {
             "Press Esc again to go back to your scene"

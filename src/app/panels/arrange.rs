@@ -35,7 +35,8 @@ macro_rules! contents {
 
 each_panel!(contents);
 
-/// Shows a panel as a window of a fixed size, or less in a small window. Its button closes the panel.
+/// Shows a panel as a window of a fixed size, or less in a small window. Its button closes the
+/// panel.
 pub(super) fn window(
     ui: &Ui,
     panel: Panel,

@@ -97,7 +97,7 @@ fn task_ui<T>(ui: &mut Ui, task: &Task<T>, cancel: Request, requests: &mut Reque
             requests.push(cancel);
         }
     });
-    // The progress bar needs repaints even if nothing else changes.
+    // The progress bar needs repaints even in an idle window.
     ui.ctx().request_repaint_after(Duration::from_millis(50));
 }
 

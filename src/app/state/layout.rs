@@ -67,8 +67,8 @@ impl Splitter {
 /// The sizes that the user wishes; `None` is the size that suits the window.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Layout {
-    /// The wish of each splitter: a width in points, or a height as a share from 0 to 1. That of the
-    /// plan is a share of the height above the laboratory.
+    /// The wish of each splitter: a width in points, or a height as a share from 0 to 1. The plan's
+    /// is a share of the height above the laboratory.
     pub(crate) wishes: [Option<f32>; Splitter::ALL.len()],
     /// The panel that is unfolded in a narrow window.
     pub unfolded: Option<Side>,

@@ -7,8 +7,8 @@
 //! * `coco`: `images/000000.png`, `panoptic/000000.png`, and the tables
 //!   `annotations/{panoptic,instances}.json`.
 //!
-//! A unit of the model is a metre; BOP has millimetres. The formats are those of the page
-//! `bop_datasets_format.md` of bop_toolkit, of <https://cocodataset.org/#format-data>, and of
+//! A unit of the model is a metre; BOP has millimetres. Sources of the formats:
+//! `bop_datasets_format.md` of bop_toolkit, <https://cocodataset.org/#format-data>, and
 //! nerfstudio's page on data conventions.
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -153,8 +153,8 @@ pub(super) fn analysis_centre(scene: &Scene, view: &View) -> Option<DVec3> {
     }
 }
 
-/// Returns the position and the direction of a light that can be set, or the reason why it cannot be
-/// transformed.
+/// Returns the position and the direction of a light that can be set, or the reason why it cannot
+/// be transformed.
 pub(super) fn place_of(light: &Light) -> Result<LightOrigin, Refusal> {
     let (position, direction) = match light.kind.anchor() {
         Anchor::Everywhere => return Err(Refusal::Ambient),

@@ -23,7 +23,7 @@ const NAME: &str = "the scene to draw";
 /// The text, with or without the objects.
 #[derive(Serialize, Deserialize)]
 struct Message {
-    /// Whether the objects are left out, because they equal those in the previous message.
+    /// Whether the objects are left out, because the previous message has the same.
     same_objects: bool,
     scene: FileScene,
 }

@@ -6,7 +6,7 @@ use std::hash::{Hash, Hasher};
 use marraztu_core::base::Shared;
 use marraztu_core::scene::Texture;
 
-/// The additional properties of a surface; by default there are none.
+/// The additional properties of a surface; none by default.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Extras {
     /// Emission: Ke.

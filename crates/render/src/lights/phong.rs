@@ -208,7 +208,7 @@ pub(super) fn phong<M: Lanes, H: Highlight>(
 ) -> Option<Reflected<M::R>> {
     let zero = lanes.lift(0.0);
     let n_l = sample.normal.dot(to_light);
-    // Many batches face away from a light: nothing else is computed for them.
+    // Many batches face away from a light, which ends their computation.
     if !lanes.any_more(n_l, zero) {
         return None;
     }

@@ -181,7 +181,7 @@ impl Notes {
         }
     }
 
-    /// All of them: first those of the whole frame, then item by item.
+    /// Returns all of them: first the whole frame's, then item by item.
     pub(super) fn into_uses(self) -> Vec<EffectUse> {
         self.uses.into_values().collect()
     }

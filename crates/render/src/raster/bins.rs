@@ -88,7 +88,7 @@ impl Bins {
         self.drawn = 0;
     }
 
-    /// Empties the bins of transparent triangles, or drops them if the frame has none.
+    /// Empties the bins of transparent triangles, or drops them if the frame is opaque.
     pub(crate) fn clear_transparent(&mut self, size: Size, is_transparent: bool) {
         self.transparent = is_transparent.then(|| {
             let mut bins = self.transparent.take().unwrap_or_default();

@@ -227,8 +227,8 @@ impl<'a> Setup<'a> {
 
     /// Sorts visible triangles by the larger side of their bounding boxes: into this thread's
     /// queues of small triangles, into the queues of the tiles they reach into, or to the large
-    /// triangles. The masks are of triangles without the alpha test, with it, and of those that run
-    /// clockwise on the screen.
+    /// triangles. The masks mark triangles without the alpha test, with it, and clockwise on the
+    /// screen.
     #[inline(always)]
     fn sort<S: Simd, R: Rule, const N: usize>(
         &self,

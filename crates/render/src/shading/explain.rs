@@ -115,7 +115,7 @@ fn one<T: ShadingNumber>(
     }
 }
 
-/// Returns a pixel with a colour that nothing else explains.
+/// Returns a pixel with a colour and no further explanation.
 fn plain(at: [usize; 2], part: Part, bytes: [u8; 3]) -> PixelColor {
     let color = bytes.map(|byte| f64::from(byte) / 255.0);
     let (rounding, terms) = ([0.0; 3], vec![Term::new(part, color)]);

@@ -1,5 +1,5 @@
-//! Prepares a plan for shading: light terms in the shading arithmetic, and mipmaps. Those of the
-//! last picture are reused.
+//! Prepares a plan for shading: light terms in the shading arithmetic, and mipmaps. What
+//! the last picture needed is reused.
 
 use super::colors::prepare_linear;
 use super::quantize::block_thresholds;

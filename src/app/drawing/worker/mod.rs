@@ -316,13 +316,13 @@ impl<P> Shared<P> {
         self.disturbed.store(true, Ordering::Relaxed);
     }
 
-    /// Returns whether work that nobody waits for goes on; asked between tiles.
+    /// Returns whether work in the background goes on; asked between tiles.
     fn goes_on_until(&self, end: &AtomicBool) -> bool {
         let is_over = [end, &self.over].iter().any(|flag| flag.load(Ordering::Relaxed));
         !is_over && !(self.is_awaited)()
     }
 
-    /// Returns the time until there is work, or `None` if there is none before a request.
+    /// Returns the time until the next work, or `None` if only a request brings some.
     fn rest(&self) -> Option<Duration> {
         let desk = self.lock();
         match (desk.has_work(), desk.settled) {
@@ -479,8 +479,8 @@ impl Painter {
         self.last = Some(wanted);
     }
 
-    /// Draws a picture. Returns false if the renderer panicked: the fault costs one picture, not the
-    /// user's work.
+    /// Draws a picture. Returns false if the renderer panicked: the fault costs one picture, not
+    /// the user's work.
     fn draw<P: Copy + Send>(
         &mut self,
         shared: &Shared<P>,

@@ -105,7 +105,7 @@ impl DrawingServer {
         })
     }
 
-    /// Returns the time until there is work, or `None` if there is none before the next request.
+    /// Returns the time until the next work, or `None` if only a request brings some.
     pub fn rest(&self) -> Option<Duration> {
         if self.is_asked { Some(Duration::ZERO) } else { self.worker.shared.rest() }
     }
