@@ -93,16 +93,19 @@ impl Bands {
         let mut band: Option<Picture> = None;
         for (i, (renderer, plan)) in self.layers.iter_mut().enumerate() {
             let done = before + i * count;
+            // In rows of tiles, times the tiles of this call, so that fractions stay integers.
             let tell = |painted: usize, tiles: usize| {
                 tell(done * tiles + count * painted, all * tiles);
             };
             let watch = Cancellation::new(wanted).telling(&tell);
+            // A single band is drawn like any picture; several are drawn row by row.
             let drawn = if self.step >= self.rows {
                 renderer.redraw_by(plan, &watch)?;
                 if self.stays { renderer.picture().clone() } else { renderer.take_picture() }
             } else {
                 std::mem::take(renderer.render_rows(plan, &rows, follows, &watch)?)
             };
+            // The first layer is over black; the second one, over white, reveals the background.
             match &mut band {
                 None => band = Some(drawn),
                 Some(band) => uncover(band, &drawn),

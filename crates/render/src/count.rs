@@ -71,6 +71,7 @@ impl FramePlan {
             .reduce(Counts::default, Counts::with);
         for one in uses.iter_mut().filter(|one| one.state.is_on()) {
             let Some(thing) = &one.on else { continue };
+            // An effect that is on but shows at no pixel counts 0.
             one.pixels = Some(counts.0.get(&(one.effect, thing.item)).copied().unwrap_or(0));
         }
     }
@@ -130,6 +131,7 @@ impl FramePlan {
                 for key in &once {
                     *surfaces.entry(*key).or_default() += 1;
                 }
+                // Several pipelines of one draw count once for its item.
                 once.dedup_by_key(|(draw, _)| *draw);
                 for (draw, _) in once {
                     *draws.entry(draw).or_default() += 1;

@@ -112,6 +112,7 @@ impl Damage {
                 geometry = true;
                 continue;
             };
+            // This draw has changed places with another, so ties of depth may have other winners.
             if at < next {
                 return Self::all(DamageCause::Order, after.size);
             }
@@ -122,6 +123,7 @@ impl Damage {
             // Other pixels can only show through if a surface moved or its holes changed.
             let shows_others = change != Change::Look || compared.has_other_holes(earlier, draw);
             let changed = if shows_others { &mut surfaces } else { &mut tiles };
+            // The item leaves its old pixels and covers its new ones.
             changed.add(reach(earlier, before));
             changed.add(reach(draw, after));
             geometry |= change != Change::Look;
@@ -137,6 +139,7 @@ impl Damage {
         if !shadow_reach::add(before, after, &mut tiles) {
             return Self { surfaces, ..Self::all(DamageCause::Shadows, after.size) };
         }
+        // If no draw changed, the tiles show the shadow of a caster outside the view.
         let out_of_view = items.is_empty() && tiles.count() > 0;
         let cause = if out_of_view { DamageCause::Shadows } else { DamageCause::Items(items) };
         Self { tiles, surfaces, geometry, cause }
@@ -208,6 +211,7 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
         || *variants != before.variants
         || *line_width != before.line_width
         || *rules != before.rules;
+    // The first reason that applies is reported.
     match () {
         () if (*size, *enlarged) != (before.size, before.enlarged) => Some(DamageCause::Size),
         () if moved => Some(DamageCause::Camera),
@@ -260,6 +264,7 @@ fn around(plan: &FramePlan, points: &[DVec4], margin: f64) -> Option<PixelBox> {
     }
     // One more pixel for rounding and snapping.
     let margin = margin + 1.0;
+    // Clamped to fit i32; pictures are smaller.
     let [left, top] = low.map(|at| (at - margin).floor().clamp(-1e6, 1e6) as i32);
     let [right, bottom] = high.map(|at| (at + margin).ceil().clamp(-1e6, 1e6) as i32);
     Some(PixelBox { left, top, right, bottom }.intersection(all))

@@ -51,6 +51,7 @@ pub fn fitted_exposure(shot: &Shot) -> f64 {
 )]
 fn brightest(renderer: &mut Renderer, shot: &Shot) -> Option<f64> {
     let picture = without_ground(renderer, shot);
+    // Only fully covered pixels count: edges are mixed with the background.
     let shown = picture.pixels().iter().filter(|pixel| pixel[3] == 255);
     let mut bright: Vec<u8> = shown.map(|[r, g, b, _]| *r.max(g).max(b)).collect();
     bright.sort_unstable_by(|a, b| b.cmp(a));

@@ -111,6 +111,7 @@ impl PictureCamera {
     pub fn ndc_from_world(&self) -> DMat4 {
         let DVec2 { x, y } = DVec2::splat(self.focal) / self.centre();
         let (near, far, range) = (self.near, self.far, self.far - self.near);
+        // The columns of `math::perspective` and `math::orthographic`.
         let columns = match self.projection {
             Projection::Perspective => [
                 DVec4::new(0.0, 0.0, near / range, -1.0),

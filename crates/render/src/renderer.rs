@@ -174,9 +174,12 @@ impl Renderer {
         watch: &Cancellation<'_>,
     ) -> Result<Damage, Cancelled> {
         let damage = self.damage(plan);
+        // Screen geometry stays valid if only colours changed.
         self.built &= !damage.geometry;
+        // Without the rules, even an unchanged picture is drawn.
         if plan.rules == Rules::Ignored || !damage.is_nothing() {
             self.resize(plan.size, 0);
+            // Until all tiles are painted, the picture mixes two frames.
             self.finished = false;
             // Runs on a drawing thread, so the caller sleeps and wakes only once per frame.
             rayon::scope(|_| {
@@ -214,6 +217,7 @@ impl Renderer {
         }
         self.finished = false;
         let Size { width, height } = plan.size;
+        // The last row of tiles may reach beyond the picture.
         let band = (rows.end * TILE_SIDE).min(height) - rows.start * TILE_SIDE;
         self.resize(Size::new(width, band), rows.start);
         let damage = Damage::rows(plan.size, rows);
@@ -247,6 +251,7 @@ impl Renderer {
         }
         self.shadows.update(plan);
         let passes = passes(plan.samples);
+        // Progress counts each tile once in every pass.
         let pictures = if plan.lit_by_sample { shifts(plan.samples).len() } else { passes.len() };
         watch.expect_tiles(pictures * damage.tiles());
         let mut sums = Vec::new();
@@ -262,6 +267,7 @@ impl Renderer {
         // The first pass is drawn last, because picking reads its geometry.
         for (i, sample_positions) in passes.iter().enumerate().rev() {
             if self.built {
+                // The geometry is reused, but the colours of hits belong to the last frame.
                 self.frame.forget_colors();
             } else {
                 let ShadingCache { lit, terms, .. } = &self.caches.fast;
@@ -311,6 +317,7 @@ impl Renderer {
         pass: &Pass<'_>,
         watch: &Cancellation<'_>,
     ) {
+        // Taken out, because `draw` borrows the renderer as a whole.
         let mut caches = std::mem::take(&mut self.caches);
         match plan.arithmetic {
             Arithmetic::F32 => self.draw(&mut caches.fast, plan, damage, pass, watch),
@@ -426,10 +433,12 @@ impl Renderer {
                 let Some(tile) = shares.next().filter(|_| watch.goes_on()) else { return };
                 if damage.tiles.contains(tile) {
                     let row = tile / columns - first_row;
+                    // A single pass paints pixels directly; several passes add up colours.
                     match pass.sums.get(tile) {
                         None => painter.paint(&context, tile, &bands[row]),
                         Some(sums) => painter.add(&context, tile, sums),
                     }
+                    // After the last pass, the sums are complete and give the means.
                     if let (true, Some(sums)) = (pass.is_last, pass.sums.get(tile)) {
                         painter.put_means(&context, tile, sums, &bands[row]);
                     }
@@ -437,6 +446,7 @@ impl Renderer {
                 }
             }
         });
+        // Painters count separately, so that threads share no counter while they draw.
         for painter in painters {
             let painter = painter.into_inner().unwrap_or_else(PoisonError::into_inner);
             self.rays += painter.shader.rays.count;

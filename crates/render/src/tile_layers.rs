@@ -118,6 +118,7 @@ impl TileLayers {
         let samples = frame.sample_positions().count();
         for (sample, top) in tops.iter_mut().enumerate().take(samples) {
             let opaque = visibility.entries(level, block, sample);
+            // The opaque surface is the farthest; layers in front of it replace it below.
             *top = opaque;
             for (words, word) in words.iter_mut().zip(&opaque) {
                 words.push(*word);
@@ -145,6 +146,7 @@ fn most(samples: &[u64]) -> u64 {
         return *only;
     }
     let alike = |word: &u64| samples.iter().filter(|other| seen(**other) == seen(*word)).count();
+    // Of equal counts, `max_by_key` takes the last one, so the order is reversed.
     samples.iter().rev().max_by_key(|word| alike(word)).copied().unwrap_or(0)
 }
 

@@ -66,6 +66,7 @@ pub fn unseen(renderer: &mut Renderer, shot: &Shot) -> Vec<(ObjectId, Unseen)> {
     let Shot { scene, view, size, .. } = shot;
     let wanted = scene.objects.iter().filter(|(id, object)| is_wanted(view, *id, object));
     let wanted: BTreeSet<ItemId> = wanted.map(|(id, _)| ItemId::Object(id)).collect();
+    // If the picture shows all of them, nothing has to be examined.
     let Some(whole) = renderer.items_unless_all_seen(wanted.clone()) else { return Vec::new() };
     let seen: BTreeSet<ItemId> = whole.iter().flatten().copied().collect();
     let left_out = left_out(shot);
@@ -99,6 +100,7 @@ fn left_out(shot: &Shot) -> BTreeMap<ItemId, Cow<'static, str>> {
             }
             _ => None,
         })
+        // An item that is drawn in part is not left out.
         .filter(|(item, _)| !drawn.contains(item))
         .collect()
 }
@@ -139,6 +141,7 @@ impl Alone<'_> {
         }
         // From both sides: if it shows now, its faces are turned away. If not, try it opaque.
         if object.is_two_sided() || faces == 0 || self.is_empty(id, |o| o.sides = Sides::Two) {
+            // A plain material of full opacity, without textures.
             let opaque = |object: &mut Object| {
                 object.sides = Sides::Two;
                 object.opacity = 1.0;

@@ -58,9 +58,11 @@ fn covered(black: [u8; 4], white: [u8; 4]) -> [u8; 4] {
     // The background is grey: its three channels are equal except for rounding.
     let ground = (seen(0) + seen(1) + seen(2) + 1) / 3;
     let share = 255 - ground.min(255);
+    // Without coverage, the colour is undefined.
     if share == 0 {
         return [0; 4];
     }
+    // Over black, colours are multiplied by the share; dividing by it rounds to the nearest.
     let color = |i: usize| ((u32::from(black[i]) * 255 + share / 2) / share).min(255) as u8;
     [color(0), color(1), color(2), share as u8]
 }

@@ -34,6 +34,7 @@ impl WorkStealing {
     ) -> Self {
         let mut end = count;
         let mut left: Vec<AtomicU64> = Vec::with_capacity(begins.len());
+        // From the last range to the first: each ends at the start of the next one.
         for (i, begin) in begins.enumerate().rev() {
             let begin = if i == 0 { 0 } else { begin.min(end) };
             left.push(AtomicU64::new((begin as u64) << 32 | end as u64));
@@ -47,6 +48,7 @@ impl WorkStealing {
     pub(crate) fn next(&self) -> Option<usize> {
         let count = self.left.len();
         let own = rayon::current_thread_index().unwrap_or(0) % count;
+        // Each thread begins to steal from its neighbour, so thieves spread over the ranges.
         let others = (1..count).map(|i| (own + i) % count);
         self.take(own, false).or_else(|| others.into_iter().find_map(|i| self.take(i, true)))
     }
@@ -55,6 +57,7 @@ impl WorkStealing {
     fn take(&self, stretch: usize, last: bool) -> Option<usize> {
         let mut taken = None;
         let update = |left| {
+            // Both ends share one atomic word, so owner and thieves never take the same piece.
             let (begin, end) = (left >> 32, left & u64::from(u32::MAX));
             if begin >= end {
                 return None;
@@ -78,6 +81,7 @@ pub(crate) fn together(threads: usize, work: impl Fn() + Sync) {
     if threads == 1 {
         without_computing(work);
     } else {
+        // Split down to single jobs, so that every thread can take one.
         let threads = (0..threads).into_par_iter().with_max_len(1);
         threads.for_each(|_| without_computing(&work));
     }
@@ -88,6 +92,7 @@ pub(crate) fn together(threads: usize, work: impl Fn() + Sync) {
 pub(crate) fn own<T>(all: &[Mutex<T>]) -> MutexGuard<'_, T> {
     let own = rayon::current_thread_index().unwrap_or(0);
     let free = (0..all.len()).find_map(|i| all[(own + i) % all.len()].try_lock().ok());
+    // If all are locked at the moment, this waits for its first choice.
     free.unwrap_or_else(|| all[own % all.len()].lock().unwrap_or_else(PoisonError::into_inner))
 }
 

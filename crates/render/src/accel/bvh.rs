@@ -211,6 +211,7 @@ impl Bvh {
         // Nodes to be copied, each with the node and child slot that refers to it.
         let mut open = vec![(0, None::<(usize, usize)>)];
         let mut triangles = Vec::new();
+        // Depth first and the first child next, so subtrees are neighbours in memory.
         while let Some((place, parent)) = open.pop() {
             let node = &tree.nodes[place];
             let own = if node.prim_count == 0 {
@@ -233,6 +234,7 @@ impl Bvh {
                 None => flat.root = own,
                 Some((at, child)) => {
                     flat.nodes[at].children[child] = own;
+                    // Boxes of inner nodes wait for their children: see below.
                     if own.count > 0 {
                         let around = triangles.iter().map(|own| box_of(&own.corners));
                         flat.nodes[at].boxes[child] = around.fold(EMPTY, union);
@@ -262,6 +264,7 @@ fn children_of(tree: &Bvh2, node: usize) -> Vec<usize> {
         [first, first + 1]
     };
     let mut children = Vec::from(pair(node));
+    // More rays meet large boxes, so opening the largest one first spares most steps.
     while children.len() < WIDTH {
         let inner =
             children.iter().enumerate().filter(|(_, child)| tree.nodes[**child].prim_count == 0);
@@ -298,6 +301,7 @@ impl Groups {
         let mut all: Vec<BvhTriangle> = (0..index(mesh.triangle_count()))
             .into_par_iter()
             .map(|number| BvhTriangle { corners: corners(number), number })
+            // With two equal corners, a triangle is a line and blocks no ray.
             .filter(|it| {
                 let [a, b, c] = it.corners;
                 a != b && b != c && c != a
@@ -309,6 +313,7 @@ impl Groups {
         all.par_sort_unstable_by_key(|it| (bits(&box_of(&it.corners)), it.number));
         let mut groups = Self::default();
         for own in all.chunk_by_mut(|a, b| box_of(&a.corners) == box_of(&b.corners)) {
+            // Two triangles are neighbours in any order, so only larger groups need the sort.
             if own.len() > 2 {
                 own.sort_by_key(|it| (key(it), it.number));
             }
@@ -356,8 +361,10 @@ fn union([low, high]: Box3, [other_low, other_high]: Box3) -> Box3 {
 #[expect(clippy::cast_possible_truncation, reason = "the tree may be built from rounded boxes")]
 fn in_unit_cube(boxes: &[Box3]) -> Vec<Aabb> {
     let [low, high] = boxes.iter().fold(EMPTY, |around, own| union(around, *own));
+    // In f64, because the difference of two f32 may overflow.
     let extent = (0..3).map(|axis| f64::from(high[axis]) - f64::from(low[axis]));
     let extent = extent.fold(0.0, f64::max).max(f64::MIN_POSITIVE);
+    // One scale for all axes keeps the ratios of areas, which the builder compares.
     let place = |corner: [f32; 3]| {
         let axis = |i: usize| ((f64::from(corner[i]) - f64::from(low[i])) / extent) as f32;
         Vec3A::new(axis(0), axis(1), axis(2))

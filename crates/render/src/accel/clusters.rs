@@ -75,6 +75,7 @@ impl Cluster {
             least_height = least_height.min(if longest > 0.0 { area / longest } else { 0.0 });
         }
         let axis = sum.normalize_or_zero().as_vec3();
+        // The cone is measured from the axis as it is stored, after rounding.
         let own = axis.as_dvec3().normalize_or_zero();
         // The cone reaches to the normal that is farthest from the axis.
         let cosines = triangles.iter().map(|of| own.dot(normal(of).0.normalize_or_zero()));
@@ -84,6 +85,7 @@ impl Cluster {
             radius: (radius * (1.0 + ROUNDING)) as f32,
             axis: axis.to_array(),
             cosine: if least_area > 0.0 { cosine as f32 } else { -1.0 },
+            // Held to the range of f32.
             least_height: (least_height.min(1e30) * (1.0 - ROUNDING)) as f32,
             least_area: (least_area.min(1e30) * (1.0 - ROUNDING)) as f32,
         }

@@ -77,7 +77,9 @@ impl Accelerator for DrawOrder {
         let Some(bounds) = mesh.bounds() else { return Self::default() };
         let count = mesh.triangle_count();
         let key = |number: usize| morton(mesh, bounds, vertices(mesh, number));
+        // A key has thirty bits, ten for each axis.
         let numbers = sorted_by_keys((0..count).into_par_iter().map(key).collect(), 30);
+        // The inverse permutation leads from the number of a triangle to its place.
         let mut places = vec![0; count];
         for (place, number) in (0..).zip(&numbers) {
             places[*number as usize] = place;
@@ -114,6 +116,7 @@ impl DrawOrder {
             }
             *vertex = *place;
         }
+        // Freed early: the table is as large as a row of coordinates.
         drop(places);
         let coordinate = |axis: usize| -> Vec<f32> {
             used.par_iter().map(|vertex| mesh.positions()[*vertex as usize][axis]).collect()
@@ -164,6 +167,7 @@ impl DrawOrder {
     pub const fn points(&self, source: NormalSource) -> &Points {
         match source {
             NormalSource::File if !self.filed.normals.is_empty() => &self.filed,
+            // A mesh without normals in its file shows the computed ones.
             NormalSource::File | NormalSource::Computed => &self.smooth,
         }
     }
@@ -215,6 +219,7 @@ fn vertices(mesh: &Mesh, number: usize) -> [u32; 3] {
 )]
 fn morton(mesh: &Mesh, bounds: Bounds, vertices: [u32; 3]) -> u32 {
     let [a, b, c] = vertices.map(|vertex| dvec3(mesh.positions()[vertex as usize]));
+    // All axes share one scale, so cells are cubes; it is never 0, even if all points coincide.
     let extent = bounds.extent().max_element().max(f64::MIN_POSITIVE);
     let place = ((a + b + c) / 3.0 - bounds.min) / extent * 1023.0;
     let bits = place.to_array().map(|x| spread(x.clamp(0.0, 1023.0) as u32));
@@ -223,6 +228,7 @@ fn morton(mesh: &Mesh, bounds: Bounds, vertices: [u32; 3]) -> u32 {
 
 /// Spreads the ten bits of a number to every third place.
 const fn spread(bits: u32) -> u32 {
+    // Each step halves the groups of bits and moves their upper halves up.
     let bits = (bits | bits << 16) & 0x0300_00ff;
     let bits = (bits | bits << 8) & 0x0300_f00f;
     let bits = (bits | bits << 4) & 0x030c_30c3;

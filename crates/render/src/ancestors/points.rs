@@ -70,6 +70,7 @@ fn span(corners: &[DVec3; 3], y: f64) -> Option<[DVec3; 2]> {
     let mut ends: Option<[DVec3; 2]> = None;
     for i in 0..3 {
         let (p, q) = (corners[i], corners[(i + 1) % 3]);
+        // A level edge has no single point at this height; its neighbours end there.
         if y < p.y.min(q.y) || y > p.y.max(q.y) || p.y == q.y {
             continue;
         }
@@ -104,6 +105,7 @@ impl<'a> Window<'a> {
         let unit = plan.view_from_world.x_axis.truncate().length();
         let distances = match plan.eye {
             Eye::Point => {
+                // The observer looks along -z.
                 let (near, far) = (-most(corners, |p| p.z), -least(corners, |p| p.z));
                 if far <= 0.0 {
                     return None;
@@ -121,6 +123,7 @@ impl<'a> Window<'a> {
         // One more pixel on each side, for rounding.
         let x = [clip.left - 1, clip.right + 1].map(|x| (f64::from(x) / half[0] - 1.0) / px);
         let y = [clip.bottom + 1, clip.top - 1].map(|y| (1.0 - f64::from(y) / half[1]) / py);
+        // The view widens with the distance, so the extremes are at the nearest or farthest corner.
         let reach = |[low, high]: [f64; 2]| {
             let all = distances.map(|d| [low * d, high * d]);
             let all = all.as_flattened();
@@ -135,9 +138,11 @@ impl<'a> Window<'a> {
     fn point(&self, place: DVec3, take: &mut dyn FnMut(i32, i32, f32)) {
         let DVec4 { x, y, z, w } = self.plan.clip_from_view * place.extend(1.0);
         let depth = z / w;
+        // Points beyond the near or far plane are left out; negated, so that NaN is, too.
         if !(w > 0.0 && (0.0..=1.0).contains(&depth)) {
             return;
         }
+        // A point belongs to the pixel that it falls into; centres do not matter.
         let column = ((x / w + 1.0) * self.half[0] - self.shift[0]).floor() as i32;
         let row = ((1.0 - y / w) * self.half[1] - self.shift[1]).floor() as i32;
         let PixelBox { left, top, right, bottom } = self.clip;

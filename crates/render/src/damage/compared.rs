@@ -21,6 +21,7 @@ pub(super) struct Compared<'a> {
 impl Compared<'_> {
     /// Returns the kind of difference between two draws, if they differ.
     pub(super) fn change(&mut self, before: &Draw, after: &Draw) -> Option<Change> {
+        // Every field is named, so that a new one cannot be forgotten here.
         let Draw {
             item: _,
             model,
@@ -96,6 +97,7 @@ impl Compared<'_> {
     }
 
     fn alike_pipelines(&mut self, before: u32, after: u32) -> bool {
+        // Many parts share few pipelines, so each pair is compared once.
         *self.pipelines.entry((before, after)).or_insert_with(|| {
             let key = |plan: &FramePlan, pipeline: u32| match &plan.pipelines[pipeline as usize] {
                 Pipeline::Flat(color) => (Some(*color), None),
@@ -134,6 +136,7 @@ fn surface_key(plan: &FramePlan, shaded: &Shaded) -> impl PartialEq + use<> {
         (light, *tiled, *vertex_colors),
         [ambient, diffuse, specular, *tint, [exponent, floor, least_cosine]].map(bits),
         [cutout, opacity].map(|number| number.map(f64::to_bits)),
+        // Textures are compared by address: comparing pixels would cost more than drawing.
         [address(texture), address(opacity_map)],
         extras.identity(),
     )

@@ -26,12 +26,14 @@ impl KeptShadows {
     /// Keeps the shadows that are valid in another plan. The cache then belongs to that plan, even
     /// if drawing it is cancelled.
     pub(crate) fn update(&mut self, plan: &FramePlan) {
+        // Only shadows of rays that start at the pixels themselves can be kept.
         if !plan.shadows.are_cast() || !shadow_reach::is_by_pixel(plan) {
             return self.forget();
         }
         let before = self.plan.replace(plan.clone());
         let holds =
             |before: &FramePlan| before.size == plan.size && shadow_reach::is_known(before, plan);
+        // If the size changed, or a quantity that all rays share, the cache starts empty.
         let Some(before) = before.filter(holds) else {
             self.known.forget();
             return self.known.keep(plan.size, &plan.shadows.sources);

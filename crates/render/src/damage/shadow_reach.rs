@@ -67,7 +67,9 @@ impl<'a> Changed<'a> {
                 new.push(caster);
             }
         }
+        // The remaining casters have disappeared.
         old.extend(left.into_values());
+        // Without a changed caster, the extents are never read and stay empty.
         let is_any = !(old.is_empty() && new.is_empty());
         let [before, after] = [before, after].map(|plan| Drawn::new(plan, is_any));
         Self { before, after, old, new }
@@ -142,6 +144,7 @@ fn before_the_near_plane(points: &[DVec4]) -> Vec<DVec4> {
             continue;
         }
         seen.push(*p);
+        // Many of these segments lie inside the hull, but inner points do not change its bounds.
         for other in points {
             let beyond = distance(other);
             if beyond < 0.0 {
@@ -159,6 +162,7 @@ fn ends_of(source: &ShadowSource, corners: &[DVec3; 8], drawn: &[DVec3]) -> Opti
     const MORE: f64 = 1.0 + 1e-6;
     match source {
         ShadowSource::Direction(towards) => {
+            // Distances along the rays of light: larger is farther from the light.
             let depth = |p: &DVec3| -p.dot(*towards);
             let nearest = corners.iter().map(depth).fold(f64::INFINITY, f64::min);
             let farthest = drawn.iter().map(depth).fold(f64::NEG_INFINITY, f64::max);
@@ -172,6 +176,7 @@ fn ends_of(source: &ShadowSource, corners: &[DVec3; 8], drawn: &[DVec3]) -> Opti
             let farthest = drawn.iter().map(|p| p.distance(*at)).fold(0.0, f64::max);
             // Scaled from the light by this factor, the box is behind every drawn object.
             let times = (farthest / nearest).max(1.0) * MORE;
+            // A light in the box, or almost touching it, gives no useful bounds.
             (times < 1e9).then(|| corners.map(|corner| *at + (corner - *at) * times))
         }
     }

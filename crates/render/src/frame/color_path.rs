@@ -93,6 +93,7 @@ impl ColorPaths {
     pub(crate) fn clear(&mut self) {
         self.starts.clear();
         self.entries.clear();
+        // The first draw starts at 0; each later call of `add` pushes an end.
         self.starts.push(0);
     }
 
@@ -100,6 +101,7 @@ impl ColorPaths {
     pub(crate) fn add(&mut self, paths: impl Iterator<Item = (u32, ColorPath)>) {
         let first = self.entries.len();
         for (pipeline, path) in paths {
+            // Parts that share a pipeline share its path.
             if !self.entries[first..].iter().any(|(other, _)| *other == pipeline) {
                 self.entries.push((pipeline, path));
             }
@@ -112,9 +114,11 @@ impl ColorPaths {
     pub(crate) fn of(&self, draw: u32, pipeline: u32) -> ColorPath {
         let [first, end] = [draw, draw + 1].map(|at| self.starts[at as usize] as usize);
         match &self.entries[first..end] {
+            // Most draws have a single pipeline, which needs no search.
             [(_, only)] => *only,
             several => {
                 let found = several.iter().find(|(other, _)| *other == pipeline);
+                // The default, a fragment list for each block, works for every surface.
                 found.map_or_else(ColorPath::default, |(_, path)| *path)
             }
         }

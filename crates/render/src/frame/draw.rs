@@ -58,6 +58,7 @@ impl Draw {
                 Pipeline::Flat(_) => None,
             })
             .collect();
+        // Without light, no pixel reads facets or face normals.
         let lit = shaded.iter().any(|shaded| shaded.light.is_some());
         let flat = lit && plan.light_at == LightAt::Face;
         let by_face = lit && self.normals == Normals::Face;
@@ -72,6 +73,7 @@ impl Draw {
         let is_bumpy = shaded.iter().any(|shaded| shaded.extras.bump.is_some());
         let at_vertices = is_bumpy && plan.variants.tangents == Tangents::Vertex;
         let Lines { edges, face_normals, .. } = self.lines;
+        // Meshes keep their tables, so only the first frame that needs one pays for it.
         for (what, needed) in [
             (Derived::Tangents(self.normal_source), at_vertices),
             (Derived::PolygonOf, true),
@@ -85,6 +87,7 @@ impl Draw {
                 self.model.mesh.prepare(what);
             }
         }
+        // Accessing an order builds it.
         let _order: &DrawOrder = self.model.mesh.draw_order();
         if edges {
             let _order: &EdgeOrder = self.model.mesh.edge_order();
@@ -98,6 +101,7 @@ impl Draw {
             let mesh = &self.model.mesh;
             let polygon = mesh.polygon_of(triangle);
             let part = mesh.polygon_parts()[polygon as usize];
+            // A drawn triangle belongs to a shown part, which has a pipeline.
             self.part_pipelines[part as usize].unwrap_or(0)
         })
     }
@@ -247,11 +251,13 @@ impl Shaded {
         self.texture.is_some()
             || self.vertex_colors
             || self.extras.reads_texels()
+            // In the alpha test, an opacity map cuts holes but changes no colour.
             || (self.opacity.is_some() && self.opacity_map.is_some())
     }
 
     /// Hashes the properties that equal surfaces share; of a texture, only its source.
     fn hash_into(&self, hasher: &mut DefaultHasher) {
+        // Destructured without `..`, so a new field cannot be forgotten.
         let Self {
             material,
             light,
@@ -272,9 +278,11 @@ impl Shaded {
         [*exponent, *floor, *least_cosine].map(bits).hash(hasher);
         (*needs_positions, *tiled, *vertex_colors).hash(hasher);
         (cutout.map(bits), opacity.map(bits)).hash(hasher);
+        // Pipelines with the same hash are still compared, so these two fields suffice.
         for stage in light.iter().flatten() {
             (stage.effect.name, stage.light).hash(hasher);
         }
+        // Hashing the texels would take too long.
         texture.as_ref().map(|texture| &texture.source).hash(hasher);
         opacity_map.as_ref().map(|map| &map.source).hash(hasher);
         extras.hash_into(hasher);
@@ -301,6 +309,7 @@ impl Stage {
 
 impl PartialEq for Stage {
     fn eq(&self, other: &Self) -> bool {
+        // Names identify rows; function pointers may differ between equal rows.
         let key = |stage: &Self| (stage.effect.name, stage.light, stage.highlight, stage.is_mapped);
         key(self) == key(other)
     }

@@ -60,6 +60,7 @@ impl Extras {
         match emission {
             None => Some([0.0; 3]),
             Some(Glow { color, map: None }) => Some(*color),
+            // The map of a glow varies from pixel to pixel.
             Some(Glow { map: Some(_), .. }) => None,
         }
     }
@@ -94,6 +95,7 @@ impl Extras {
             ("ambient map", ambient.is_some()),
             ("specular map", specular.is_some()),
             ("exponent map", exponent.is_some()),
+            // Only height maps have a gain.
             ("bump map", bump.as_ref().is_some_and(|bump| bump.gain.is_some())),
             ("normal map", bump.as_ref().is_some_and(|bump| bump.gain.is_none())),
         ]

@@ -131,12 +131,15 @@ impl FramePlan {
     /// Returns the position of each draw in the order from far to near, by the centres of their
     /// boxes. At equal distances, the younger one counts as farther.
     pub(crate) fn far_to_near(&self) -> Vec<u32> {
+        // View space looks along -Z.
         let away = |draw: &Draw| {
             let middle = draw.model.mesh.bounds().map_or(DVec3::ZERO, |bounds| bounds.centre());
             -draw.view_from_object.transform_point3(middle).z
         };
         let mut order: Vec<(f64, usize)> = self.draws.iter().map(away).zip(0..).collect();
+        // `total_cmp` also orders NaN.
         order.sort_by(|a, b| b.0.total_cmp(&a.0).then(b.1.cmp(&a.1)));
+        // `order` lists draws by position; the result lists positions by draw.
         let mut places = vec![0; order.len()];
         for (place, (_, draw)) in (0..).zip(order) {
             places[draw] = place;

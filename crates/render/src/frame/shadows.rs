@@ -40,6 +40,7 @@ impl ShadowSource {
 
     /// Returns all of its numbers.
     fn numbers(&self) -> [f64; 8] {
+        // The first number tells the kinds apart.
         match *self {
             Self::Point(at) => [0.0, at.x, at.y, at.z, 0.0, 0.0, 0.0, 0.0],
             Self::Direction(to) => [1.0, to.x, to.y, to.z, 0.0, 0.0, 0.0, 0.0],
@@ -94,6 +95,7 @@ impl Caster {
 
     /// Returns whether all of its triangles are drawn and have no holes.
     pub(crate) fn is_solid(&self) -> bool {
+        // A hidden part is not solid either, because the BVH holds its triangles.
         let solid =
             |part: &Option<CasterPart>| part.as_ref().is_some_and(|part| part.holes.is_none());
         self.polygons.is_none() && self.parts.iter().all(solid)
@@ -102,6 +104,7 @@ impl Caster {
     /// Returns whether both cast the same shadows.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         let Self { item, model, world_from_object, parts, polygons } = self;
+        // Textures are compared by address: comparing texels would take too long.
         let key = |Holes { texture, map, opacity }: &Holes| {
             (address(texture), address(map), opacity.to_bits())
         };
@@ -134,6 +137,7 @@ impl Shadows {
 
     /// Returns whether all shadows equal those of another frame.
     pub(crate) fn is_same(&self, other: &Self) -> bool {
+        // A light without shadows may come or go without changing any shadow.
         let cast = |source: &&Option<ShadowSource>| source.is_some();
         let own = self.sources.iter().filter(cast).flatten();
         let others = other.sources.iter().filter(cast).flatten();
@@ -147,10 +151,12 @@ impl Shadows {
     pub(crate) fn prepare(&self, method: ShadowMethod) {
         for caster in &self.casters {
             let mesh = &caster.model.mesh;
+            // Rays need the BVH; maps are rasterised in draw order.
             match method.map() {
                 None => _ = mesh.bvh(),
                 Some(_) => _ = mesh.draw_order(),
             }
+            // Both look up the part of a triangle by its polygon.
             mesh.prepare(Derived::PolygonOf);
         }
     }

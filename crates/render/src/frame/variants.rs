@@ -42,6 +42,7 @@ impl Grid {
     /// Converts an offset in 1/256 pixel to steps of this grid.
     #[must_use]
     pub const fn offset(self, [x, y]: [i32; 2]) -> [i32; 2] {
+        // Both grids are powers of two, so the quotient is exact.
         let times = self.parts() / Self::Usual.parts();
         [x * times, y * times]
     }
@@ -100,6 +101,7 @@ impl Variants {
     /// The grid that corners of triangles are snapped to.
     pub(crate) const fn grid(&self) -> Grid {
         match (self.0.subpixels, self.0.coverage) {
+            // Only exact coverage supports the fine grid.
             (Subpixels::Bits12, Coverage::Exact) => Grid::Fine,
             _ => Grid::Usual,
         }

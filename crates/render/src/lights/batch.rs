@@ -42,6 +42,7 @@ impl<T: Copy + Default> Default for Batch<T> {
 impl<T: Copy + Default> Batch<T> {
     /// Sets the light at all positions to 0.
     pub(crate) fn darken(&mut self) {
+        // Kernels load whole vectors, so the last one is cleared beyond `len`, too.
         let end = self.len.next_multiple_of(16).min(BATCH);
         for row in self.diffuse.iter_mut().chain(&mut self.specular) {
             row[..end].fill(T::default());

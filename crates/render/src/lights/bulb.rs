@@ -34,6 +34,7 @@ pub(crate) fn arriving<M: Lanes>(
 ) -> (Vec3<M::R>, M::R) {
     let to_light = set(lanes, term.position).minus(position);
     let square = to_light.dot(to_light);
+    // 1 / d, or 0 at the light itself and if the square overflows.
     let per_d = square.reciprocal_root();
     let (zero, one) = (lanes.lift(0.0), lanes.lift(1.0));
     // The division is skipped for lights that do not fade.

@@ -97,6 +97,7 @@ impl<T: Number> LightTerm<T> {
             position: all(light.position),
             axis: all(light.direction.map(|x| -x)),
             attenuation: all(light.attenuation),
+            // With these coefficients, the attenuation is exactly 1 at any distance.
             fades: light.attenuation != [1.0, 0.0, 0.0],
             cos_half_aperture: T::from_f64(light.cos_half_aperture),
             gathered: Power::new(light.exponent, GATHERED_FLOOR),
@@ -152,6 +153,7 @@ impl Highlight for Reflection {
     fn cosine<R: Real>(sample: Sample<R>, to_light: Vec3<R>, n_l: R) -> Option<R> {
         let n_v = sample.normal.dot(sample.to_eye);
         let two = n_l.lift(2.0);
+        // R.V = 2 (N.L) (N.V) - L.V saves computing R.
         Some(two * n_l * n_v - to_light.dot(sample.to_eye))
     }
 }
@@ -215,6 +217,7 @@ pub(super) fn phong<M: Lanes, H: Highlight>(
     let diffuse = set(lanes, term.diffuse).times(weakened(Real::max(n_l, zero), strength));
     let mut specular = None;
     if let Some(cosine) = H::cosine(sample, to_light, n_l) {
+        // Light that grazes the surface has no highlight.
         let lit = n_l.if_more(lanes.lift(GRAZING), cosine, zero);
         // A map can widen the highlight to any cosine.
         let least = if H::IS_MAPPED { zero } else { lanes.set(term.least_cosine) };
@@ -233,6 +236,7 @@ pub(super) fn phong<M: Lanes, H: Highlight>(
 
 /// The largest attenuation factor of a light over a region.
 pub(super) fn max_attenuation(light: &ViewLight, region: Option<&Region>) -> f64 {
+    // The light is strongest at the smallest distance.
     let d = region.map_or(0.0, |region| region.least_distance(light.position.into()));
     let [a0, a1, a2] = light.attenuation;
     1.0 / (a0 + (a1 + a2 * d) * d)

@@ -57,6 +57,7 @@ impl Region {
         let error = self.error_from(light);
         self.corners.iter().all(|corner| {
             let offset = light - *corner;
+            // The margin covers the error of positions and light that grazes the face.
             normal.dot(offset) < -(error + EDGE_ON * offset.length())
         })
     }
@@ -66,6 +67,7 @@ impl Region {
     pub(crate) fn least_distance(&self, from: DVec3) -> f64 {
         let low = self.corners.iter().fold(DVec3::INFINITY, |low, corner| low.min(*corner));
         let high = self.corners.iter().fold(DVec3::NEG_INFINITY, |high, corner| high.max(*corner));
+        // The axis-aligned box contains the hull, so its distance is a lower bound.
         let to_box = (from.clamp(low, high) - from).length();
         let least = to_box - self.error_from(from);
         // NaN gives the bound 0.
@@ -101,6 +103,7 @@ impl Region {
         if self.most_cosine(apex, axis) <= border {
             return true;
         }
+        // Computed cosines may be slightly too large, so the cone is widened.
         let wider = border - COSINE_ROUNDING;
         if wider <= 0.0 {
             // A cone this wide is not convex: no plane touches it.
@@ -108,6 +111,7 @@ impl Region {
         }
         let sine = (1.0 - wider * wider).max(0.0).sqrt();
         let error = self.error_from(apex);
+        // The hull lies beyond a plane if all of its corners do.
         let beyond = |normal: DVec3| {
             let apart = |corner: &DVec3| normal.dot(*corner - apex);
             self.corners.iter().all(|corner| apart(corner) > error)
@@ -115,6 +119,7 @@ impl Region {
         let middle = self.corners.iter().sum::<DVec3>() / 8.0 - apex;
         let aside = middle - axis * axis.dot(middle);
         let off_axis = aside.length() / middle.length();
+        // First the plane across the axis, then the tangent plane that faces the region.
         beyond(-axis)
             || off_axis > LEAST_ASIDE && beyond(aside.normalize_or_zero() * wider - axis * sine)
     }

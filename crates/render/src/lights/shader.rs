@@ -116,6 +116,7 @@ impl LightRow {
             max_falloff: E::max_falloff,
             fraction_at: E::fraction_at,
             variant: |form, is_mapped| match (form, is_mapped) {
+                // Without a highlight, its exponent is not read.
                 (Form::Plain, _) => variant::<E, Nothing>(),
                 (Form::Reflection, false) => variant::<E, Reflection>(),
                 (Form::HalfVector, false) => variant::<E, HalfVector>(),
@@ -154,6 +155,7 @@ impl<T: Number, E: LightShader, H: Highlight> Kernel<T> for Shade<'_, T, E, H> {
                 position: load(lanes, &batch.position, at),
                 normal: load(lanes, &batch.normal, at),
                 to_eye: load(lanes, &batch.to_eye, at),
+                // The condition is constant, so variants without a map load nothing.
                 exponent: match H::IS_MAPPED {
                     true => lanes.load(&batch.exponent, at),
                     false => lanes.lift(1.0),

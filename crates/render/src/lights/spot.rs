@@ -30,6 +30,7 @@ impl LightShader for Spot {
     fn max_falloff(light: &ViewLight, region: Option<&Region>) -> f64 {
         let (apex, axis) = (light.position.into(), light.direction.into());
         let cosine = region.map_or(1.0, |region| region.most_cosine(apex, axis));
+        // A negative base with a fractional exponent would give NaN.
         max_attenuation(light, region) * libm::pow(cosine.max(0.0), light.exponent)
     }
 
@@ -48,6 +49,7 @@ impl LightShader for Spot {
         term: &LightTerm<M::Number>,
     ) -> Option<Reflected<M::R>> {
         let (to_light, strength) = arriving(lanes, sample.position, term);
+        // Rounding can bring the cosine above 1, where powers are not defined.
         let c = Real::min(set(lanes, term.axis).dot(to_light), lanes.lift(1.0));
         let border = lanes.set(term.cos_half_aperture);
         // The power is only computed if a position is inside the cone.
@@ -55,6 +57,7 @@ impl LightShader for Spot {
             return None;
         }
         let gathered = c.power(&term.gathered);
+        // Positions outside the cone may share a vector with others inside.
         let strength = c.if_more(border, strength * gathered, lanes.lift(0.0));
         phong::<M, H>(lanes, sample, to_light, Some(strength), term)
     }

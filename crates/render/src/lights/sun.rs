@@ -18,6 +18,7 @@ impl LightShader for Sun {
 
     fn is_behind(light: &ViewLight, _: &Region, normals: &[DVec3]) -> bool {
         let direction = DVec3::from_array(light.direction);
+        // `direction` is the light's travel, so light from behind has a positive cosine.
         normals.iter().all(|normal| normal.dot(direction) > EDGE_ON)
     }
 

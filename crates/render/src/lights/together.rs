@@ -30,8 +30,10 @@ where
                 position: load(lanes, &batch.position, at),
                 normal: load(lanes, &batch.normal, at),
                 to_eye: load(lanes, &batch.to_eye, at),
+                // If any exponent is mapped, lights are added one by one instead.
                 exponent: lanes.lift(1.0),
             };
+            // The sums replace the batch's light, so it is not cleared before.
             let (mut diffuse, mut specular) = (Vec3([zero; 3]), Vec3([zero; 3]));
             // The light kind is matched per batch of lanes, where the branch is well predicted.
             for (which, form, term) in lights.clone() {

@@ -37,9 +37,11 @@ fn full_path(plan: &FramePlan, draw: &Draw, pipeline: &Pipeline) -> FullPath {
     let linear = plan.variants.are_linear();
     match plan.light_at {
         LightAt::Vertex if shows_corner_light(shaded) && !linear => FullPath::Corners,
+        // Only fragment lists combine such light with texels, maps or linear values.
         LightAt::Vertex | LightAt::Face if shaded.light.is_some() => FullPath::List,
         LightAt::Face | LightAt::Vertex | LightAt::Pixel | LightAt::Sample => {
             let stages = shaded.light.as_deref().unwrap_or_default();
+            // One pass over a block knows a texture and uniform emission, but no shadows.
             let is_simple = shaded.extras.even_glow().is_some()
                 && !(linear && shaded.texture.is_some())
                 && !plan.shadows.any_of(stages);
@@ -93,6 +95,7 @@ pub(crate) fn is_uniform(plan: &FramePlan, pipeline: &Pipeline) -> bool {
             shaded.texture.is_none()
                 && !shaded.vertex_colors
                 && !shaded.extras.reads_texels()
+                // Dithering rounds the same colour differently from pixel to pixel.
                 && plan.variants.rounding != Rounding::Dithered
                 && (shaded.light.is_none() || plan.light_at == LightAt::Face)
         }
@@ -134,6 +137,7 @@ pub(crate) fn colors_early(plan: &FramePlan) -> bool {
         && plan.arithmetic == Arithmetic::F32
         && plan.variants.coverage == Coverage::Exact
         && plan.variants.interpolation != Interpolation::EverySixteen
+        // Early colours are computed without shadow rays.
         && !plan.shadows.are_cast()
         && few_are_hidden(plan)
 }
@@ -144,6 +148,7 @@ pub(crate) fn colors_early(plan: &FramePlan) -> bool {
 const ENOUGH_PIXELS: f64 = 2.0;
 
 fn few_are_hidden(plan: &FramePlan) -> bool {
+    // Boxes may overlap, so the sum is only an estimate.
     let (mut pixels, mut triangles) = (0.0, 0.0);
     for draw in &plan.draws {
         pixels += box_on_screen(draw, plan.viewport);

@@ -27,9 +27,11 @@ impl Cover {
         let opacity = if look.opacity < 1.0 { look.opacity.max(0.0) } else { 1.0 };
         let texture = look.texture.filter(|_| textured);
         let map = look.map(MapKind::Opacity).filter(|_| textured);
+        // Partial alpha needs blending; alphas of 0 and 1 only cut holes.
         let fades = texture.is_some_and(|texture| texture.picture.has_partial_alpha())
             || map.is_some_and(|map| map.texture.picture.fades());
         match transparency {
+            // No texel can raise the product to one half.
             Transparency::Threshold if opacity < 0.5 => Self::Nothing,
             Transparency::Threshold => Self::Threshold(opacity),
             Transparency::Weighted | Transparency::Objects | Transparency::Exact => {

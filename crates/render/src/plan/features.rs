@@ -62,6 +62,7 @@ impl Planner<'_> {
     /// Notes the effects of a draw, except lights.
     pub(super) fn note_features(&self, into: &mut Planning, object: &Object, draw: &Draw) {
         let Planning { plan, notes, .. } = into;
+        // A closure, because facts are only collected if explanations are wanted.
         let facts = || {
             let pipelines = draw.part_pipelines.iter().flatten();
             let pipelines = pipelines.map(|pipeline| &plan.pipelines[*pipeline as usize]);
@@ -104,11 +105,13 @@ impl FramePlan {
             }),
             Effect::Texture => plan.for_each_shaded(|shaded| {
                 shaded.texture = None;
+                // An opacity map can cut holes without the texture.
                 if shaded.opacity_map.is_none() {
                     shaded.cutout = None;
                 }
             }),
             Effect::AlphaTest => plan.for_each_shaded(|shaded| {
+                // A transparent surface keeps its opacity map.
                 if shaded.cutout.is_some() {
                     (shaded.cutout, shaded.opacity_map) = (None, None);
                 }
@@ -117,6 +120,7 @@ impl FramePlan {
             Effect::VertexColors => plan.for_each_shaded(|shaded| shaded.vertex_colors = false),
             Effect::Emission => plan.for_each_shaded(|shaded| shaded.extras.emission = None),
             Effect::Maps => plan.for_each_shaded(|shaded| {
+                // The ambient glow stays, because its lights are not among the stages.
                 shaded.extras.ambient.iter_mut().for_each(|ambient| ambient.map = None);
                 (shaded.extras.specular, shaded.extras.exponent) = (None, None);
                 for stage in shaded.light.iter_mut().flatten() {
@@ -139,6 +143,7 @@ impl FramePlan {
             Effect::Surfaces => plan.draws.iter_mut().for_each(|draw| draw.filled = false),
             Effect::Normals => return None,
         }
+        // An effect that the plan does not use leaves it unchanged.
         (plan != *self).then_some(plan)
     }
 
@@ -155,6 +160,7 @@ impl FramePlan {
         self.for_each_shaded(|shaded| {
             if let Some(stages) = &mut shaded.light {
                 change(stages);
+                // Perhaps none of the remaining lights reads positions.
                 shaded.needs_positions = rules.positions(&Reading::of(stages.iter())).is_none();
             }
         });
@@ -207,6 +213,7 @@ fn texture(it: &Facts<'_>) -> EffectState {
         Filter::Trilinear => "trilinear",
         Filter::Anisotropic => "anisotropic",
     };
+    // The first reason that applies: the view, the object, the mesh, the file.
     let left_out = if !it.draw.filled {
         "edges only"
     } else if it.object.surface == Surface::Material {
@@ -299,6 +306,7 @@ fn bumps(it: &Facts<'_>) -> EffectState {
         LightAt::Vertex => "light is evaluated at vertices",
         LightAt::Pixel | LightAt::Sample => "no light reads them, or their -bm is 0",
     };
+    // `normals` holds for both kinds of map, so heights are preferred.
     heights.or(normals).unwrap_or(EffectState::left_out(left_out))
 }
 

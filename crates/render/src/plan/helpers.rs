@@ -41,6 +41,7 @@ pub(super) fn world_from_diamond(observer: &ObserverSpace, bulb: DVec3) -> Optio
     let pixels =
         observer.clip_from_view.y_axis.y * observer.unit / w * observer.size.height as f64 / 2.0;
     let half = DIAMOND.max(DIAMOND_PIXELS / 2.0 / pixels);
+    // The axes of view space turn the diamond towards the observer.
     let axes = DMat3::from_mat4(observer.world_from_view);
     Some(math::placed(axes * half, bulb))
 }

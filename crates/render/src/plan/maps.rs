@@ -35,6 +35,7 @@ pub(super) fn holds_same_alpha(texture: Option<&Shared<Texture>>, map: &Shared<T
             || (Shared::same(&texture.picture, &map.picture)
                 && (texture.wrap, texture.offset, texture.scale)
                     == (map.wrap, map.offset, map.scale));
+        // An opaque map counts by its brightness instead of its alpha.
         is_same && map.picture.least_alpha() < 255
     })
 }
@@ -46,6 +47,7 @@ pub(super) fn emission(
     look: &PartLook<'_>,
     factor: f64,
 ) -> Option<Glow> {
+    // Files may hold any number.
     let number = |k: f64| if k.is_nan() { 0.0 } else { k.clamp(0.0, LARGEST) };
     let color = look.material.emission.map(|k| number(k * factor));
     if rules.emission(color).is_some() {
@@ -70,6 +72,7 @@ pub(super) fn mapped_ambient(
     }
     let mut color = None;
     stages.retain(|stage| {
+        // Only ambient light reads no positions.
         if !stage.effect.reads_positions {
             let light = into.plan.lights[stage.light as usize].color;
             let sum = color.get_or_insert([0.0; 3]);
@@ -96,6 +99,7 @@ impl Planner<'_> {
             return Some(Bump { map: normals.texture.clone(), gain: None });
         }
         let heights = mapped(ground, look, MapKind::Bump)?;
+        // A gain that is infinite or NaN counts as flat.
         let gain = if heights.gain.is_finite() { heights.gain.clamp(-1e6, 1e6) } else { 0.0 };
         let is_flat = rules.bumps(gain).is_some();
         (!is_flat).then(|| Bump { map: heights.texture.clone(), gain: Some(gain) })
@@ -109,11 +113,13 @@ impl Planner<'_> {
         extras: &mut Extras,
         stages: &mut [Stage],
     ) {
+        // Without highlights, no pixel shows either map.
         if stages.iter().all(|stage| stage.highlight == Form::Plain) {
             return;
         }
         let map = |kind| mapped(ground, look, kind).map(|map| map.texture.clone());
         extras.specular = map(MapKind::Specular);
+        // Only light per pixel can follow a map of exponents.
         if self.shot.settings.light == LightAt::Pixel {
             extras.exponent = map(MapKind::Exponent);
         }

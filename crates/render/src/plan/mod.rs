@@ -69,6 +69,7 @@ pub fn explain_frame(shot: &Shot) -> (FramePlan, Vec<EffectUse>) {
 
 /// Plans in the selected arithmetic, or in f64 if the frame's numbers do not fit f32.
 fn planned(rules: Rules, notes: fn() -> Notes, shot: &Shot) -> Planning {
+    // Whether all distances fit f32 is only known once the frame is planned.
     let as_asked = planned_in(rules, notes(), shot);
     if shot.settings.arithmetic == Arithmetic::F64 || as_asked.plan.has_room() {
         return as_asked;
@@ -87,6 +88,7 @@ fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
     let plan = FramePlan {
         size: match settings.resolution {
             Resolution::Full => *size,
+            // An odd size is rounded up, so the enlarged picture has no missing column or row.
             Resolution::Half => Size::new(size.width.div_ceil(2), size.height.div_ceil(2)),
         },
         viewport: observer.viewport,
@@ -102,6 +104,7 @@ fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
         lit_by_sample: by_sample && settings.samples != Samples::One,
         shift: [0; 2],
         spacing: match by_sample {
+            // N samples per pixel are as dense as a square grid of this spacing.
             true => 1.0 / libm::sqrt(f64::from(settings.samples.count())),
             false => 1.0,
         },
@@ -126,6 +129,7 @@ fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
         };
         EffectUse::new(Effect::LinearLight, None, state)
     });
+    // Lights come first, because shadows and surfaces refer to their numbers.
     let shining = view_lights(&mut into, scene, view, &observer);
     let planner = Planner { shot, observer, shining };
     planner.add_shadows(&mut into);

@@ -62,6 +62,7 @@ impl ObserverSpace {
         let lens = scene.selected_camera(view).lens;
         let unit = unit(&lens, view.projection);
         let turned = math::placed(turn, DVec3::ZERO) * DMat4::from_translation(-eye);
+        // Lengths are converted to units of view space; the angle stays.
         let lens = Lens {
             near: lens.near * unit,
             far: lens.far * unit,
@@ -84,6 +85,7 @@ impl ObserverSpace {
     /// line along its border reaches in.
     pub(super) fn misses(&self, clip_from_object: DMat4, corners: [DVec3; 8]) -> bool {
         let clip = corners.map(|corner| clip_from_object * corner.extend(1.0));
+        // The sides move outwards, because lines are drawn around their positions.
         let aside = |pixels: f64| 1.0 + 2.0 * LINE / pixels;
         let (x, y) = (aside(self.viewport.width), aside(self.viewport.height));
         // A margin for rounding: nothing may be culled that geometry would keep.
@@ -106,6 +108,7 @@ impl ObserverSpace {
         let aside = |pixels: f64| 1.0 + 2.0 * LINE / pixels;
         let (wx, wy) = (w * aside(self.viewport.width), w * aside(self.viewport.height));
         let sizes = [x, y, z, w].map(|row| row.abs());
+        // The rounding error of a plane's distance is relative to these sums.
         let sum = sizes.into_iter().sum::<DVec4>();
         SpherePlanes {
             planes: [wx + x, wx - x, wy + y, wy - y, z, w - z]
@@ -134,6 +137,7 @@ impl ObserverSpace {
             corners.map(|corner| (self.clip_from_view * view_from_object * corner.extend(1.0)).w);
         let (nearest, farthest) =
             w.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), w| (low.min(*w), high.max(*w)));
+        // Pixels are widest at the farthest corner; errors of depth grow with the range of w.
         let beside = SNAPPED * self.pixel() * farthest;
         let deeper = ROUNDING * placed.reach() * (1.0 + farthest / nearest);
         Region::placed(view_from_object, corners, beside + deeper)

@@ -28,6 +28,7 @@ impl Planner<'_> {
     pub(super) fn add_objects(&self, into: &mut Planning) {
         let scene = &self.shot.scene;
         let spheres = scene.objects.spheres();
+        // With thousands of objects, most are rejected by their spheres alone.
         let outside = self.culls_spheres(into).then(|| self.observer.spheres_outside());
         for (i, place) in spheres.places.iter().enumerate() {
             if outside.as_ref().is_some_and(|planes| planes.misses(spheres, i)) {
@@ -130,6 +131,7 @@ impl Planner<'_> {
     fn placement(&self, world_from_object: DMat4) -> [DMat4; 2] {
         let ObserverSpace { view_from_world, clip_from_view, .. } = self.observer;
         if self.shot.settings.vertices == VertexArithmetic::F32 {
+            // This variant also composes matrices in f32.
             let view_from_object = view_from_world.as_mat4() * world_from_object.as_mat4();
             let clip_from_object = (clip_from_view.as_mat4() * view_from_object).as_dmat4();
             return [view_from_object.as_dmat4(), clip_from_object];
@@ -163,6 +165,7 @@ impl Planner<'_> {
         {
             draw.back = Back::Culled;
         }
+        // An object that shows no pixel is left out before its surfaces are planned.
         let thing = Thing { observer: &self.observer, draw: &draw, bounds };
         let rules = into.plan.rules;
         let reason = if mesh.polygon_count() == 0 {
@@ -207,9 +210,11 @@ impl Planner<'_> {
         if self.shot.settings.light != LightAt::Pixel {
             // Lit at vertices or faces: clipping does not matter.
             let exact = Region::placed(draw.view_from_object, corners, 0.0);
+            // Positions in f32 are off by a few roundings of the largest coordinate.
             let error = 2e-6 * exact.reach();
             return (Some(Region::placed(draw.view_from_object, corners, error)), false);
         }
+        // A geometry variant may move pixels out of the region.
         let sure = !Variants::of(&self.shot.settings).has_geometry_variant();
         if !sure || !self.observer.holds(draw.clip_from_object, corners) {
             return (None, false);

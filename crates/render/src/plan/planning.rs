@@ -29,6 +29,7 @@ impl Planning {
     /// Returns the index of a pipeline in the frame, and adds it if it is new.
     pub(super) fn pipeline(&mut self, pipeline: Pipeline) -> u32 {
         let pipelines = &mut self.plan.pipelines;
+        // Hashes may collide, so pipelines with the same hash are compared.
         let alike = self.places.entry(pipeline.fingerprint()).or_default();
         let same = alike.iter().find(|at| pipelines[**at as usize] == pipeline);
         same.copied().unwrap_or_else(|| {

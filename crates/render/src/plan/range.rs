@@ -23,6 +23,7 @@ impl FramePlan {
                 // The depth is zw / w - zz: 1 at the near plane, 0 at the far plane.
                 let (zz, zw) = (m.z_axis.z, m.w_axis.z);
                 let (near, far) = (zw / (1.0 + zz), zw / zz);
+                // A tiny near distance does no harm if every object is farther away.
                 far <= high && (near >= low || self.ways_off().all(|off| off >= low))
             }
             Eye::Parallel => {

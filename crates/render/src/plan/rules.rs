@@ -174,6 +174,7 @@ impl Rules {
     /// Only exact transparency gives the same picture for both.
     pub(super) fn layer(self, transparency: Transparency) -> Verdict {
         let exact = transparency == Transparency::Exact;
+        // Other methods give a layer other bytes, so it stays opaque even if rules are ignored.
         self.verdict(|| Some("it is opaque")).or_else(|| because(!exact, "it is opaque"))
     }
 

@@ -21,6 +21,7 @@ impl Planner<'_> {
         let is_filled = self.shot.view.fill == Fill::Filled;
         if is_filled && into.plan.shadows.sources.iter().any(Option::is_some) {
             let mut objects: Vec<_> = self.shot.scene.objects.iter().collect();
+            // By id, so reordering the list of objects does not change the casters.
             objects.sort_by_key(|(id, _)| *id);
             objects.retain(|(id, object)| self.not_asked_for(*id, object).is_none());
             let casters = objects.into_iter().filter_map(|(id, object)| self.caster(id, object));
@@ -92,6 +93,7 @@ fn note(shining: &Shining, on: Option<Thing>, state: EffectState) -> EffectUse {
 /// Returns the caster of a part of an object. `None` if the part is not drawn.
 fn caster_part(object: &Object, part: u32) -> Option<CasterPart> {
     let look = object.part_look(part);
+    // Below one half, even opaque texels fail the alpha test.
     if !object.shows_part(part) || look.opacity < 0.5 {
         return None;
     }
@@ -104,6 +106,7 @@ fn caster_part(object: &Object, part: u32) -> Option<CasterPart> {
     let holes = || Holes {
         texture: texture.cloned(),
         map: map.cloned(),
+        // NaN counts as opaque, as on the visible surface.
         opacity: if look.opacity < 1.0 { look.opacity } else { 1.0 },
     };
     let is_pictured = texture.is_some() || map.is_some();

@@ -47,17 +47,20 @@ impl Planner<'_> {
         if linear {
             look.material = decoded(&look.material);
         }
+        // Only lines are drawn, so the colour does not matter.
         if !ground.seen {
             return Some(into.pipeline(Pipeline::Flat(Color([0; 3]))));
         }
         let mesh = &object.model.mesh;
         let rules = into.plan.rules;
         let texture = look.texture.filter(|_| !mesh.uvs().is_empty());
+        // If rules are ignored, a white texture must give the same bytes as no texture.
         let texture = match rules.texture(texture.map(|texture| &**texture)) {
             Some(_) => None,
             None => texture.or_else(|| Some(white()).filter(|_| !mesh.uvs().is_empty())),
         };
         let opacity_map = mapped(ground, &look, MapKind::Opacity).map(|map| &map.texture);
+        // A map with the texture's alpha would count twice.
         let opacity_map = opacity_map.filter(|map| !holds_same_alpha(texture, map));
         let surface = TexturedSurface { texture, opacity_map, opacity: look.opacity };
         // A textured part may have holes; an untextured one has the same opacity everywhere.
@@ -69,6 +72,7 @@ impl Planner<'_> {
             tint = tint.map(color::linear);
         }
         let lit = self.lit(into, ground, &look, texture);
+        // Unlit materials show Kd as their colour.
         if look.unlit && object.surface != Surface::Texture {
             tint = std::array::from_fn(|i| tint[i] * lit.material.diffuse[i]);
         }
@@ -117,6 +121,7 @@ impl Planner<'_> {
         if look.unlit {
             return shaded;
         }
+        // Tilted normals may catch light from behind a face, so bumps are planned before lights.
         let bump = self.bump(into.plan.rules, ground, look);
         let mut stages = self.stages(into, (ground, bump.is_some()), &material);
         shaded.extras.ambient =
@@ -124,6 +129,7 @@ impl Planner<'_> {
         shaded.material = material;
         self.map_highlights(ground, look, &mut shaded.extras, &mut stages);
         shaded.needs_positions = into.plan.rules.positions(&Reading::of(stages.iter())).is_none();
+        // Only lights that read normals show bumps.
         shaded.extras.bump = bump.filter(|_| shaded.needs_positions);
         // Light is culled tile by tile if some light has a limited reach.
         shaded.tiled = ground.tiled && stages.iter().any(|stage| stage.effect.has_reach);
@@ -160,6 +166,7 @@ impl Planner<'_> {
         let times = strongest * arriving * steepest * exposed;
         let deeper = |floor: f64| (floor - libm::log2(times)).max(LOWEST);
         if self.shot.settings.arithmetic == Arithmetic::F64 {
+            // The reference keeps much weaker highlights than f32 does.
             return deeper(-24.0);
         }
         let count = lit().count().max(1);
@@ -198,6 +205,7 @@ impl Planner<'_> {
             }
             let plain = into.plan.rules.highlight(&meeting);
             if effect.reads_positions {
+                // One light with a highlight is enough to explain highlights as on.
                 no_highlight = no_highlight.and(plain);
             }
             let highlight = match self.shot.settings.specular {

@@ -57,14 +57,17 @@ impl TilePlan {
         bounds: PixelBox,
         depths: impl FnOnce() -> Option<[f32; 2]>,
     ) {
+        // Only entries of the last tile are cleared, because a frame may have many pipelines.
         for pipeline in self.seen.drain(..) {
             self.decided[pipeline] = None;
         }
         self.kept.clear();
         let tiled =
             |pipeline: &Pipeline| matches!(pipeline, Pipeline::Shaded(Shaded { tiled: true, .. }));
+        // With several samples, a pixel may be lit at a point that has another depth.
         let middles = plan.samples == Samples::One || plan.lit_by_sample;
         let tiled = middles && plan.pipelines.iter().any(tiled);
+        // Finding the depths reads the whole tile, so it is only done for lights with a reach.
         let depths = tiled.then(depths);
         self.region = depths.flatten().map(|depths| region(plan, bounds, depths.map(f64::from)));
         self.decided.resize(plan.pipelines.len(), None);
@@ -86,6 +89,7 @@ impl TilePlan {
             Some(decided) => decided,
             None => self.decide(plan, shaded, stages, &region),
         };
+        // New decisions are listed, so the next tile can clear them.
         if self.decided[at].replace(decided).is_none() {
             self.seen.push(at);
         }
@@ -122,6 +126,7 @@ fn region(plan: &FramePlan, bounds: PixelBox, [low, high]: [f64; 2]) -> Region {
     let (zz, zw) = (m.z_axis.z, m.w_axis.z);
     let Viewport { width, height } = plan.viewport;
     let [right, down] = plan.shift.map(|shift| f64::from(shift) / f64::from(SUBPIXELS));
+    // A pixel as x and y at w = 1; in orthographic projection, at any depth.
     let ray = |x: i32, y: i32| {
         let (x, y) = (f64::from(x) + right, f64::from(y) + down);
         let (x, y) = (x * 2.0 / width - 1.0, 1.0 - y * 2.0 / height);
@@ -142,6 +147,7 @@ fn region(plan: &FramePlan, bounds: PixelBox, [low, high]: [f64; 2]) -> Region {
             let inverse = |depth: f64| (depth + zz) / zw;
             let error = ROUNDING * inverse(1.0);
             let farthest = inverse(0.0);
+            // 1/w minus its error could be 0 or negative, so the far plane bounds w.
             let w = |inverse_w: f64| 1.0 / inverse_w.max(farthest * (1.0 - ROUNDING));
             ([w(inverse(low) - error), w(inverse(high) + error)], place[0])
         }

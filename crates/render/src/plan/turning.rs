@@ -58,6 +58,7 @@ fn shows_front(draw: &Draw, polygon: u32, projection: Projection) -> bool {
         size = size.max(offset.length_squared());
         height = height.max(offset.dot(normal).abs());
     }
+    // Corners of a flat polygon leave its plane only by rounding.
     let is_flat = height <= 1e-6 * size.sqrt();
     let normal = draw.view_from_normal * normal;
     let to_observer = match projection {
@@ -81,6 +82,7 @@ pub(super) fn is_turned_away(draw: &Draw, viewport: Viewport) -> bool {
         let corners = triangle.vertices.map(place);
         // Clipped triangles are undecided.
         corners.iter().all(ScreenVertex::is_inside) && {
+            // A triangle without an area covers no pixel, so 0 counts as turned away.
             let area = doubled_area(corners.map(|corner| corner.at()));
             if draw.mirrored { area <= 0 } else { area >= 0 }
         }

@@ -170,11 +170,13 @@ impl Notes {
 
     /// Notes a decision. An effect that is on for one part of an object is on for the object.
     pub(super) fn add(&mut self, make: impl FnOnce() -> EffectUse) {
+        // Most frames are not explained and format no text.
         if !self.wanted {
             return;
         }
         let new = make();
         let key = (new.effect, new.on.as_ref().map(|thing| thing.item));
+        // The first note stays, unless a later part turns the effect on.
         let before = self.uses.entry(key).or_insert_with(|| new.clone());
         if new.state.is_on() && !before.state.is_on() {
             *before = new;

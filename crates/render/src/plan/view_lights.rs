@@ -92,6 +92,7 @@ fn shadow_source(light: &Light, source: &Source) -> Option<ShadowSource> {
                 direction,
                 cos_half_aperture: source.cos_half_aperture,
             },
+            // Without a valid direction, shadows are planned all around the light.
             None => ShadowSource::Point(source.position),
         }
     } else if light.kind.has_position() {
@@ -120,6 +121,7 @@ fn within_reach(place: DVec3, fades: &Attenuation, unit: f64) -> (DVec3, [f64; 3
     let step = (nearer / unit).min(1e150);
     // A coefficient beyond the largest number is dark at any distance.
     let clamped = |coefficient: f64| coefficient.min(f64::MAX);
+    // A distance d in view space is d * step in the world, so coefficients take its powers.
     let coefficients =
         [fades.constant, clamped(fades.linear * step), clamped(fades.quadratic * step * step)];
     (place / nearer, coefficients)

@@ -57,6 +57,7 @@ impl<'a> AlphaSurface<'a> {
     ) -> Option<&'b Self> {
         let (index, start) = frame.draw_of(number);
         let pipeline = plan.draws[index as usize].pipeline_of(number - start.number);
+        // Neighbouring triangles mostly have the same surface.
         if last.as_ref().is_none_or(|last| last.pipeline != pipeline) {
             *last = Self::new(plan, pipeline);
         }
@@ -95,6 +96,7 @@ impl<'a, 'b> AlphaTest<'a, 'b> {
     /// Classifies a block, given by its first pixel.
     #[inline(always)]
     pub(crate) fn holes_in_block(&self, [x, y]: [i32; 2]) -> Holes {
+        // Texture coordinates inside the block lie between the ones at its four corner pixels.
         let [right, bottom] = [x + BLOCK - 1, y + BLOCK - 1];
         let corners = [[x, y], [right, y], [x, bottom], [right, bottom]];
         let mut uvs = [[0.0; 2]; 4];
@@ -151,6 +153,7 @@ impl<'a, 'b> AlphaTest<'a, 'b> {
         let AlphaSurface { opacity, samplers, .. } = self.surface;
         let upper = self.weights.of_row(simd, [x, y], upper)?;
         let lower = self.weights.of_row(simd, [x, y + 1], lower)?;
+        // The opacity of the material comes first, then each texture scales it.
         let mut alpha = f32x16::splat(simd, opacity.of_material() as f32);
         let mut border = alpha.simd_lt(0.0);
         for (i, layer) in opacity.layers().iter().enumerate() {
@@ -171,6 +174,7 @@ impl<'a, 'b> AlphaTest<'a, 'b> {
                 }
             }
         }
+        // Close to one half, f32 and f64 may differ in the result of the test.
         let open = (alpha - 0.5).abs().simd_lt(NEAR) | border;
         Some([alpha.simd_gt(0.5).to_bitmask(), open.to_bitmask()])
     }

@@ -93,6 +93,7 @@ impl Bins {
         self.transparent = is_transparent.then(|| {
             let mut bins = self.transparent.take().unwrap_or_default();
             bins.clear(size, self.sample_positions);
+            // Layers are gathered from hits and large triangles only.
             bins.tile_queues.clear([0; 2], false);
             bins
         });
@@ -134,6 +135,7 @@ impl Bins {
 
     /// Sets the corner colours, if known, of the triangle that [`Self::add_large`] adds next.
     pub(crate) fn color_next(&mut self, colors: Option<CornerColors>) {
+        // Triangles added without colours before this one get `None`.
         self.large_colors.resize(self.large.len(), None);
         self.large_colors.push(colors);
     }

@@ -78,6 +78,7 @@ impl Format for Any {
 
     #[inline(always)]
     fn lines_nearer(self) -> u32 {
+        // The bias in steps of f32 is lost in the rounding to a coarser format.
         if self.0 == DepthFormat::F32Reversed { 0 } else { 2 }
     }
 
@@ -85,6 +86,7 @@ impl Format for Any {
     fn key(self, depth: f32) -> u32 {
         match self.0 {
             DepthFormat::F32Reversed => depth.to_bits(),
+            // Rounded like a buffer of 1 - depth, then subtracted to make nearer keys larger.
             DepthFormat::F32 => FIRST + ONE - (1.0 - depth).to_bits(),
             DepthFormat::Bits24 => whole(depth, 24),
             DepthFormat::Bits16 => whole(depth, 16),
@@ -130,6 +132,7 @@ fn whole(depth: f32, bits: u32) -> u32 {
 #[expect(clippy::cast_precision_loss, reason = "a power of two")]
 fn whole_keys<S: Simd>(depth: f32x16<S>, bits: u32) -> u32x16<S> {
     let simd = depth.simd;
+    // A power of two scales depths exactly, and the fraction is exact, too.
     let all = depth * (1_u32 << bits) as f32;
     let whole: i32x16<S> = all.to_int();
     let rest = all - whole.to_float::<f32x16<S>>();

@@ -88,6 +88,7 @@ impl EdgeSetup<'_> {
         // The rest is done in lanes: clipping test, length, and rasterising the short edges.
         let (a, b) = (self.ends(simd, edges, 0), self.ends(simd, edges, 1));
         let beyond = a[0].simd_eq(ScreenVertex::BEYOND) | b[0].simd_eq(ScreenVertex::BEYOND);
+        // Lanes without a vertex fetched some other one; they are odd already.
         odd = (odd | beyond.to_bitmask()) & shown;
         shown &= !odd;
         let ([xa, ya, _], [xb, yb, _]) = (a, b);
@@ -97,6 +98,7 @@ impl EdgeSetup<'_> {
         let some = short & mask32x16::from_bitmask(simd, shown);
         let number = i32x16::from_slice(simd, &numbers).bitcast();
         for sample in 0..N {
+            // The lines move instead of the sample, which keeps the arithmetic exact.
             let [x, y] = bins.sample_positions.shift::<N>(sample);
             let seen = [[a[0] - x, a[1] - y, a[2]], [b[0] - x, b[1] - y, b[2]]];
             let (width, nearer) = (self.width, self.nearer());
@@ -143,6 +145,7 @@ impl EdgeSetup<'_> {
     fn add_odd(&self, edge: &DrawEdge, number: u32, bins: &mut Bins) {
         let mesh = &self.draw.model.mesh;
         let ends = mesh.edges()[edge.number as usize].ends;
+        // The ends come from the mesh, because some have no position on the screen.
         let ends = ends.map(|end| dvec3(mesh.positions()[end as usize]));
         self.add_segment(ends, number, self.nearer(), bins);
     }
@@ -178,6 +181,7 @@ impl EdgeSetup<'_> {
 fn outline_of(draw: &Draw, edge: &DrawEdge, outlines: &[AtomicU8]) -> Outline {
     let outline = |polygon: u32| outlines[polygon as usize].load(Ordering::Relaxed);
     let [a, b] = edge.polygons;
+    // Edges of one or two polygons store them; others are looked up in the mesh.
     if b != NONE {
         return Outline::of(outline(a).max(outline(b)));
     }
@@ -266,6 +270,7 @@ impl NormalsInObject<'_> {
     fn placed(&self, normal: DVec3, length: f64) -> DVec3 {
         let across = self.object_from_view * (self.draw.view_from_normal * normal);
         let along = (self.view_from_object * normal).length();
+        // A placement that flattens the object has no inverse: the quotient is not finite then.
         let scale = along / (self.view_from_object * across).length();
         if scale.is_finite() { across * (scale * length) } else { normal * length }
     }

@@ -69,6 +69,7 @@ impl FloatTriangle {
             low: a.min(b).min(c),
             high: a.max(b).max(c),
             number,
+            // Edge functions are evaluated at centres.
             first: first.map(|i| i as f32 + 0.5),
         }
     }
@@ -109,6 +110,7 @@ impl FloatTriangle {
                 some &= (value + most).simd_ge(0.0);
                 whole &= (value + least).simd_ge(0.0);
             }
+            // If one row of blocks is left, the second half of the register lies outside the area.
             let rows = if row == last { 0xff } else { 0xffff };
             let some = some.to_bitmask() & columns & rows;
             touched.some |= some << (8 * row);
@@ -120,6 +122,7 @@ impl FloatTriangle {
     /// Returns the rounding error bound of an edge function in the tile.
     #[inline(always)]
     fn error(&self, [a, b, c]: [f32; 3]) -> f32 {
+        // No sample of the tile is farther than 66 pixels from its first centre.
         let [x, y] = self.first;
         ((a * (x.abs() + 66.0)).abs() + (b * (y.abs() + 66.0)).abs() + c.abs()) * ERROR
     }
@@ -137,6 +140,7 @@ impl FloatTriangle {
         let (from, to) = if N == 1 { (0.0, 7.0) } else { (-0.5, 7.5) };
         let [a, b, c, d] = [at(from, from), at(from, to), at(to, from), at(to, to)];
         let [_, second, third] = self.lines;
+        // The errors of both edge functions, as depth, and the roundings of the sum.
         let wrong = (self.error(second) * self.second.abs() + self.error(third) * self.third.abs())
             / self.area
             + 4.0 * f32::EPSILON;

@@ -57,6 +57,7 @@ pub(crate) fn put_samples<S: Simd>(
 /// Returns the first eight and the last eight of sixteen entries.
 #[inline(always)]
 fn halves<S: Simd>(keys: u32x16<S>, numbers: u32x16<S>) -> [f64x8<S>; 2] {
+    // Words are little-endian: the number comes before the key.
     let (low, high) = (!numbers).interleave(keys);
     [low.bitcast(), high.bitcast()]
 }

@@ -61,6 +61,7 @@ impl<'a> Facing<'a> {
             Back::Red => Outline::Back,
             Back::Culled => Outline::Not,
         };
+        // Front faces have a negative area, or a positive one if mirrored.
         let outlines = if draw.mirrored { [back, Outline::Own] } else { [Outline::Own, back] };
         let screen = Screen::new(draw.clip_from_object, viewport);
         Self { draw, mesh: &draw.model.mesh, vertices, screen, outlines }
@@ -99,12 +100,14 @@ impl<'a> Facing<'a> {
         let outlines = area.simd_eq(0).select(i32x16::splat(simd, Outline::Not as i32), outlines);
         let outlines: [i32; PACK] = *outlines;
         let choosy = self.draw.polygons.is_some() || self.draw.uniform.is_none();
+        // Relaxed stores are enough: outlines are read after all threads have joined.
         for (lane, triangle) in triangles.iter().enumerate() {
             let shown = !choosy || self.draw.shows(triangle.number);
             let [outline, ..] = outlines[lane].to_le_bytes();
             let outline = if shown { outline } else { Outline::Not as u8 };
             all[triangle.number as usize].store(outline, Ordering::Relaxed);
         }
+        // Their areas in lanes are meaningless, so these outlines are overwritten.
         for lane in Bits((beyond | wide).to_bitmask()) {
             self.one(triangles[lane].number, all);
         }
@@ -135,6 +138,7 @@ impl<'a> Facing<'a> {
         if own.iter().all(ScreenVertex::is_inside) {
             return doubled_area(own.map(|corner| corner.at()));
         }
+        // A clipped triangle counts by the polygon that is left, as a fan around its first corner.
         let clip = corners.map(|vertex| self.screen.clip(order.position(vertex)));
         let pieces = self.screen.cut(clip);
         let piece = |i: usize| {

@@ -118,6 +118,7 @@ impl ScreenGeometry {
         for draw in &plan.draws {
             let mesh = &draw.model.mesh;
             (start.vertex, start.outline) = (vertex, outline);
+            // At equal depths, the lower number of the earlier draw is in front.
             start.number = start.end;
             start.end += number(mesh.draw_order().triangles.len());
             vertex += mesh.draw_order().x.len();
@@ -174,6 +175,7 @@ impl ScreenGeometry {
         });
         drop(pieces);
         self.place_otherwise(level, plan);
+        // The vertices of a cancelled frame are incomplete and must not be reused.
         if watch.is_given_up() {
             return;
         }
@@ -210,6 +212,7 @@ impl ScreenGeometry {
             } else {
                 unsnapped[own].par_chunks_mut(piece).enumerate().for_each(|(i, out)| {
                     let at = i * piece;
+                    // `to_pixels` subtracts the offset of the sample itself.
                     vertex_variants::to_pixels(plan.variants, level, &screen, order, at, out);
                 });
             }
@@ -251,6 +254,7 @@ impl ScreenGeometry {
             // For every thread: one that takes no triangles may still take lines.
             bins.hits.colored = light.is_some();
         }
+        // The tables are computed before the parallel section, which only reads them.
         self.inputs.holes.update(plan);
         let parts = Parts { plan, inputs: &self.inputs, light };
         share_out(level, self.set_up.sorted(), &parts, &mut self.bins, watch);
@@ -335,6 +339,7 @@ impl ScreenGeometry {
     /// near if draws are blended as a whole.
     pub(crate) fn place_of_draw(&self, triangle: u32) -> (Range<u32>, u64) {
         let (draw, start) = self.draw_of(triangle);
+        // Positions count from 1, because a layer with the key 0 would count as taken before.
         let place = self.far_to_near.get(draw as usize).map_or(0, |place| u64::from(*place) + 1);
         (start.number..start.end, place)
     }
@@ -372,6 +377,7 @@ impl ScreenGeometry {
     }
 
     fn draw_of_line(&self, line: LineNumber) -> usize {
+        // Draws without lines have empty ranges, which the search skips.
         self.inputs.starts.partition_point(|start| start.line_end <= line.line())
     }
 
@@ -384,6 +390,7 @@ impl ScreenGeometry {
 /// Moves vertices relative to a sample with this offset in subpixels.
 fn see_from(vertices: &mut [ScreenVertex], shift: [i32; 2]) {
     if shift != [0; 2] {
+        // Vertices beyond the clipping planes keep their marker in x.
         for vertex in vertices.iter_mut().filter(|vertex| vertex.is_inside()) {
             *vertex = vertex.seen_from(shift);
         }

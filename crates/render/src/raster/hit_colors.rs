@@ -144,6 +144,7 @@ impl<'a, S: Simd> Mix<'a, S> {
                 [row(simd, &c[0]), row(simd, &c[1]), row(simd, &c[2])],
             ],
             conversion,
+            // Only ordered dithering has thresholds that differ between neighbours.
             threshold: (first.to_bits() == second.to_bits()).then_some(first),
         }
     }
@@ -159,6 +160,7 @@ impl<'a, S: Simd> Mix<'a, S> {
     ) -> u32x16<S> {
         let simd = lanes.simd;
         let Self { by_w: [w0, w1, w2], colors: [a, b, c], .. } = self;
+        // Each pixel takes the numbers of its triangle from that triangle's lane.
         let per_area = of_lanes(self.per_area, lanes);
         let linear = [second * per_area, third * per_area];
         let by_w = Vec3([of_lanes(*w0, lanes), of_lanes(*w1, lanes), of_lanes(*w2, lanes)]);
@@ -168,6 +170,7 @@ impl<'a, S: Simd> Mix<'a, S> {
             Some(threshold) => f32x16::splat(simd, threshold),
             None => {
                 let place = (y & (BLOCK - 1)) * BLOCK + (x & (BLOCK - 1));
+                // The 64 thresholds fill four pages of a table.
                 let thresholds = bytemuck::cast_ref(self.conversion.thresholds);
                 pick::<S, 4>(simd, thresholds, place).bitcast()
             }
@@ -188,8 +191,10 @@ impl Conversion<'_> {
         (by_w, corners): (Vec3<f32x16<S>>, [Vec3<f32x16<S>>; 3]),
         threshold: f32x16<S>,
     ) -> u32x16<S> {
+        // The same functions as in later shading, for the same bits.
         let (weights, _) = weighed(self.interpolation, Sixteen(simd), linear, by_w);
         let mut color = between(corners, weights);
+        // Linear colours are encoded after interpolation.
         if let Some(encoding) = self.encoding {
             let Vec3([r, g, b]) = color;
             color = Vec3([encoding.of(r), encoding.of(g), encoding.of(b)]);

@@ -135,6 +135,7 @@ impl Default for Hits {
             last: Vec::new(),
             pages,
             colors: Vec::new(),
+            // Page 0 is the sentinel.
             used: 1,
             colored: false,
         }
@@ -145,6 +146,7 @@ impl Hits {
     /// Removes all hits, for a picture of this many columns and rows of pixels and of tiles.
     pub(crate) fn clear(&mut self, extent: [i32; 2], tiles: [i32; 2]) {
         (self.extent, self.tiles) = (extent, tiles);
+        // Every chain starts at the sentinel again; the pages keep their memory.
         self.last.clear();
         self.last.resize(usize::try_from(tiles[0] * tiles[1]).expect("not negative"), FULL);
         self.used = 1;
@@ -191,8 +193,10 @@ impl Hits {
         count: usize,
     ) {
         let Pixels { x, y, .. } = *pixels;
+        // The common case: all hits go to one tile, and no lane has to be masked out.
         if let Reach::One(tile) = *reach {
             let place = lanes_place::<S, N>(x & (TILE - 1), y & (TILE - 1), sample).bitcast();
+            // Adding hits moves the next place, so their colours are stored before.
             if let Some(color) = pixels.color {
                 color.store_slice(self.next_colors(tile));
             }
@@ -276,6 +280,7 @@ impl Hits {
     #[inline(always)]
     fn page(&mut self, tile: usize) -> &mut Page {
         let page = self.last[tile] as usize;
+        // Compressing stores write sixteen numbers, however few are new.
         if self.pages[page].count > PAGE - PACK {
             return self.turn(tile);
         }
@@ -286,6 +291,7 @@ impl Hits {
     #[cold]
     #[inline(never)]
     fn turn(&mut self, tile: usize) -> &mut Page {
+        // Pages of earlier frames are reused first.
         if self.used == self.pages.len() {
             self.pages.push(Page::new(0));
         }

@@ -71,6 +71,7 @@ impl HoleTable {
             let part = mesh.polygon_parts()[mesh.polygon_of(triangle) as usize];
             let uvs = uvs(draw, triangle);
             let opacity = parts[part as usize].as_ref().zip(uvs);
+            // A part without holes is opaque, and so is a triangle without texture coordinates.
             opacity.map_or(Holes::Nowhere, |(opacity, uvs)| opacity.holes(between(uvs)))
         };
         Self {
@@ -96,6 +97,7 @@ impl HoleTable {
 impl HoleTables {
     /// Creates the tables that a frame needs, and drops all others.
     pub(crate) fn update(&mut self, plan: &FramePlan) {
+        // Only tables that are found again below are kept.
         let last = std::mem::take(&mut self.0);
         for (i, draw) in plan.draws.iter().enumerate() {
             let table = if !draw.filled || with_holes(draw, plan).all(|it| it.is_none()) {

@@ -47,6 +47,7 @@ impl Inputs {
     /// Returns the draw of a triangle, and the draw's first numbers.
     #[inline(always)]
     pub(crate) fn draw_of(&self, triangle: u32) -> (u32, Start) {
+        // The first draw that ends after the triangle; draws without triangles are skipped.
         let draw = self.starts.partition_point(|start| start.end <= triangle);
         (number(draw), self.starts[draw])
     }
@@ -55,6 +56,7 @@ impl Inputs {
     pub(crate) fn corners_of(&self, draw: usize) -> &[ScreenVertex] {
         let Start { vertex, vertex_end, .. } = self.starts[draw];
         let Vertices { usual, fine, .. } = &self.vertices;
+        // The finer grid replaces the usual one for all draws of a frame.
         let corners = if fine.is_empty() { usual } else { fine };
         &corners[vertex..vertex_end]
     }

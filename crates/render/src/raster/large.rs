@@ -108,6 +108,7 @@ impl Large {
     #[inline(always)]
     pub(crate) fn gain(&self, [x, y]: [i32; 2]) -> [i64; 3] {
         let (x, y) = (i64::from(x), i64::from(y));
+        // Exact: a pixel has 256 or 4096 grid steps, so 256 divides the steps per pixel.
         let gain = |i: usize| (self.right[i] >> 8) * x + (self.down[i] >> 8) * y;
         [gain(0), gain(1), gain(2)]
     }
@@ -175,6 +176,7 @@ impl Large {
         let gain = |steps: &[i64; 3]| {
             7.0 * (steps[1] as f64 * self.to_second + steps[2] as f64 * self.to_third)
         };
+        // Depth is linear, so its extremes in the block are at corners.
         let (mut x, mut y) = (gain(&self.right), gain(&self.down));
         let mut first = first;
         if N > 1 {

@@ -128,6 +128,7 @@ impl Layers {
             }));
             for &number in &bins.tiles[tile].large {
                 let triangle = &bins.large[number as usize];
+                // Only the variants of coverage list unsnapped corners.
                 match bins.unsnapped.get(number as usize) {
                     None => self.add_large(level, triangle),
                     Some(corners) => {
@@ -186,6 +187,7 @@ impl Layers {
             }
             Coverage::Exact | Coverage::F32Edges => {
                 let reach = self.sample_positions.reach::<FOUR>();
+                // Rounding may cover centres beyond the box, so the box is enlarged.
                 let reach = beyond::reach(plan.variants.coverage, reach);
                 let at = each(triangle.corners, |corner| corner.at());
                 let reached = PixelBox::reached(at, reach);
@@ -299,6 +301,7 @@ impl Layers {
     ) {
         let Self { large, block: held, depth_format, .. } = self;
         let format = Any(*depth_format);
+        // A triangle behind the farthest opaque entry is hidden at every pixel.
         let farthest = opaque.iter().fold(u64::MAX, |least, word| *word.min(&least));
         let mut plane = [0; BLOCK_PIXELS];
         for (large, touched) in large.iter().filter(|(_, touched)| touched.some >> block & 1 != 0) {
@@ -333,6 +336,8 @@ impl Layers {
     /// are the lower halves of words of the visibility buffer. So are the upper halves, unless
     /// objects are drawn one by one.
     pub(crate) fn row(&self, order: Transparency, i: usize) -> [u64; BLOCK_PIXELS] {
+        // Object-wise keys hold the number, so later faces are blended over earlier ones. Entries
+        // hold its complement.
         let flip = if order == Transparency::Objects { u64::from(u32::MAX) } else { 0 };
         let mut row = self.block.rows[i];
         for (word, count) in row.iter_mut().zip(&self.block.counts) {
@@ -365,6 +370,7 @@ impl Keys<'_> {
             return word;
         }
         let triangle = !(word as u32);
+        // Layers often come from the same draw as the layer before.
         if !self.last.0.contains(&triangle) {
             self.last = self.frame.place_of_draw(triangle);
         }
@@ -388,6 +394,7 @@ impl Held {
 
     #[inline(always)]
     fn add(&mut self, pixel: usize, key: u64) {
+        // The layer was taken in an earlier turn, or the pixel is complete.
         if key <= self.floor[pixel] {
             return;
         }
@@ -397,6 +404,7 @@ impl Held {
             return;
         }
         let row = self.counts[pixel];
+        // The block gets as many rows as its deepest pixel has layers.
         if row == self.rows.len() {
             if row == MOST {
                 return self.add_to_full(pixel, key);
@@ -411,6 +419,7 @@ impl Held {
     #[cold]
     fn add_to_full(&mut self, pixel: usize, key: u64) {
         let mut column: Vec<u64> = self.rows.iter().map(|row| row[pixel]).collect();
+        // A selection is enough, because `end` sorts the layers that are kept.
         column.select_nth_unstable(KEPT - 1);
         for (row, key) in self.rows.iter_mut().zip(&column[..KEPT]) {
             row[pixel] = *key;
@@ -418,6 +427,7 @@ impl Held {
         self.counts[pixel] = KEPT;
         self.ceiling[pixel] = column[KEPT - 1];
         self.more |= 1 << pixel;
+        // The key is now above the ceiling, or there is room for it.
         self.add(pixel, key);
     }
 
@@ -436,6 +446,7 @@ impl Held {
                 }
             }
         }
+        // The next turn starts where this one stopped; complete pixels accept no further keys.
         self.floor = self.ceiling;
         !self.rows.is_empty()
     }

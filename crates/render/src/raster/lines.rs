@@ -115,6 +115,7 @@ pub(crate) fn stretches(
     // The line's minor coordinate at a major coordinate, rounded down to pixels.
     let across = move |pixel: i32| {
         let along = i64::from(pixel) * parts - i64::from(ua);
+        // If du is 0, the line has no length and covers no pixel: any divisor will do.
         let v = i64::from(va) + along * dv / if du == 0 { 1 } else { du };
         i32::try_from(v.div_euclid(parts)).unwrap_or(0)
     };
@@ -157,6 +158,7 @@ pub(crate) fn pixels(
     };
     let ((ua, va), (ub, vb)) = (turn(a), turn(b));
     let (du, dv) = (i64::from(ub) - i64::from(ua), i64::from(vb) - i64::from(va));
+    // A line of length 0 leaves no diamond.
     if du == 0 {
         return;
     }
@@ -166,11 +168,13 @@ pub(crate) fn pixels(
     let end = (ua.max(ub).div_euclid(parts) + 1).min(last);
     let pixel = i64::from(parts);
     let at = |u: i32| i64::from(u) * pixel + pixel / 2 - i64::from(ua);
+    // v at the centre of the first column, times parts du: see `Crossing`.
     let first = i64::from(va) * du + dv * at(begin);
     let mut crossing = Crossing::new(first, dv * pixel, du * pixel);
     for u in begin..end {
         let (v, along) = (crossing.next(), at(u));
         let Ok(v) = i32::try_from(v) else { continue };
+        // None of the repeated pixels is inside the clip.
         if v >= high || v <= low - width {
             continue;
         }
@@ -179,6 +183,7 @@ pub(crate) fn pixels(
         if is_end && !leaves(parts, [u, v], (along, du), [(ua, va), (ub, vb)]) {
             continue;
         }
+        // The centre of the first or last pixel may lie beyond the end of the line.
         let t = (along as f64 / du as f64).clamp(0.0, 1.0);
         let depth = f64::from(a.depth) + t * (f64::from(b.depth) - f64::from(a.depth));
         let depth = nearer(depth as f32, line.nearer);
@@ -204,6 +209,7 @@ struct Crossing {
 impl Crossing {
     /// Starts with a dividend, its growth and a divisor other than 0.
     const fn new(dividend: i64, growth: i64, divisor: i64) -> Self {
+        // The sign moves to the dividend, so both remainders are below a positive divisor.
         let (dividend, growth) = (dividend * divisor.signum(), growth * divisor.signum());
         let divisor = divisor.abs();
         Self {
@@ -238,6 +244,7 @@ fn leaves(
         let (cu, cv) = (u * parts + half, v * parts + half);
         (pu - cu).abs() + (pv - cv).abs() < half
     };
+    // A line that ends in the diamond does not leave it.
     if within(to) {
         return false;
     }
@@ -294,6 +301,7 @@ pub(crate) fn draw_short<S: Simd, const N: usize>(
     for column in 0..columns {
         let u = begin + column;
         let along = (u << 8) + HALF - ua;
+        // Only the fraction of va enters the dividend, so it stays below 2^23.
         let above = (va & (SUBPIXELS - 1)) * du + dv * along;
         let above = backward.select(-above, above).to_float::<f32x16<S>>();
         let v = (va >> 8) + (above / below).floor().to_int::<i32x16<S>>();
@@ -307,6 +315,7 @@ pub(crate) fn draw_short<S: Simd, const N: usize>(
         if !covered.any_true() {
             continue;
         }
+        // The bits of depths are ordered like the depths, so a step nearer adds 1.
         let depth = (depths.at(along) + lines.nearer.cast_signed()).min(ONE.cast_signed());
         let depth = depth.bitcast();
         // A wide line repeats each pixel across its major axis.

@@ -68,6 +68,7 @@ impl<S: Simd> Medium<S> {
         if area == 0 {
             return None;
         }
+        // Reversed edges make edge functions positive inside for the other winding.
         let lines = if area > 0 { [[q, r], [r, p], [p, q]] } else { [[r, q], [p, r], [q, p]] };
         let right = each(lines, |[p, q]| p[1] - q[1]);
         let down = each(lines, |[p, q]| q[0] - p[0]);
@@ -79,6 +80,7 @@ impl<S: Simd> Medium<S> {
         let [a, b, c] = each(large.corners, |corner| corner.depth);
         let per_area = 1.0 / f64::from(area.abs());
         Some(Self {
+            // With the bias included, a centre is covered if no value is negative.
             edges: [at(0) - least(0), at(1) - least(1), at(2) - least(2)],
             least: [least(1), least(2)],
             right,
@@ -115,6 +117,7 @@ impl<S: Simd> Medium<S> {
     ) -> Touched {
         let side = BLOCK * SUBPIXELS;
         let (first, last) = (area.left / BLOCK, (area.right - 1) / BLOCK);
+        // The columns of the area, for both rows of blocks that one register holds.
         let columns = 0x0101 * ((0xff_u64 << first) & (0xff >> (7 - last)));
         let (across, below) = (i32x16::from_slice(simd, &ACROSS), i32x16::from_slice(simd, &DOWN));
         let mut gains = [i32x16::splat(simd, 0); 3];
@@ -201,6 +204,7 @@ impl<S: Simd> Medium<S> {
         let (second, third) = (in_f64(second), in_f64(third));
         let upper = self.depth_at(second[0], third[0]);
         let depth = upper.narrow(self.depth_at(second[1], third[1]));
+        // Rounding must not move a depth beyond the depths of the corners.
         let (low, high) = (f32x16::splat(simd, self.low), f32x16::splat(simd, self.high));
         let depth = depth.simd_gt(low).select(depth, low);
         depth.simd_lt(high).select(depth, high)

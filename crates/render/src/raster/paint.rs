@@ -55,6 +55,7 @@ impl<'a> Paint<'a> {
         let splat = |of: [f32; 3]| Vec3(each(of, |number| f32x16::splat(simd, number)));
         let [a, b, c] = self.colors;
         let corners = (splat(self.by_w), [splat(a), splat(b), splat(c)]);
+        // Two rows of a block have sixteen of its 64 thresholds.
         let thresholds = &self.conversion.thresholds[pair % 4 * PACK..][..PACK];
         let thresholds = f32x16::from_slice(simd, thresholds);
         self.conversion.pixels(simd, [second, third], corners, thresholds)
@@ -81,6 +82,7 @@ impl Painted<'_> {
     fn put_linear<S: Simd>(&mut self, pair: usize, pixels: u64, linear: [f32x16<S>; 2]) {
         let simd = linear[0].simd;
         let colors = &mut self.colors.as_chunks_mut::<PACK>().0[pair % 4];
+        // Hidden and uncovered pixels keep their colours.
         let before = u32x16::from_slice(simd, colors);
         let new = self.paint.rows(pair, linear);
         mask32x16::from_bitmask(simd, pixels).select(new, before).store_slice(colors);
@@ -97,6 +99,7 @@ impl<S: Simd> InFront<S> for Painted<'_> {
         [upper, lower]: [[f64x8<S>; 2]; 2],
         _: f32x16<S>,
     ) -> u64 {
+        // A wide triangle is scaled in f64, like pixels coloured later, for the same bits.
         match self.paint.wide {
             None => self.put(pair, pixels, [upper[0].narrow(lower[0]), upper[1].narrow(lower[1])]),
             Some(per_area) => {
@@ -105,6 +108,7 @@ impl<S: Simd> InFront<S> for Painted<'_> {
                 self.put_linear(pair, pixels, [second, third]);
             }
         }
+        // Painting makes no holes.
         pixels
     }
 }

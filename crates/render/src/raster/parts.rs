@@ -59,6 +59,7 @@ impl Parts<'_> {
         let Self { plan, inputs, .. } = *self;
         let (draw, start) = (&plan.draws[i], inputs.starts[i]);
         let mesh = &draw.model.mesh;
+        // Outlines depend on the usual grid, even if triangles are on a finer one.
         let vertices = &inputs.vertices.usual[start.vertex..start.vertex_end];
         let outlines = inputs.outlines_of(plan, i);
         match what {
@@ -73,6 +74,7 @@ impl Parts<'_> {
                 with_rule!(plan.variants, R => if order.clusters.is_empty() {
                     setup.run::<R>(level, triangles, (bins, brush));
                 } else {
+                    // Pieces begin at whole clusters.
                     let clusters = &order.clusters[from / CLUSTER..];
                     let culling = Culling::new(draw, setup.screen, plan.size);
                     culling.each_left(clusters, triangles, |some| {

@@ -43,6 +43,7 @@ impl Queue {
         some: mask32x16<S>,
         count: usize,
     ) -> bool {
+        // The count is below WAITING here; the remainder only saves bounds checks.
         let at = self.count % WAITING;
         if let Some(vertices) = vertices {
             for (row, values) in self.vertices.iter_mut().zip(vertices) {
@@ -104,6 +105,7 @@ impl Queue {
             self.count = 0;
             return;
         }
+        // A full queue overflows by fewer than sixteen triangles.
         for row in self.rows.iter_mut().chain(&mut self.vertices) {
             let (first, others) = row.split_at_mut(WAITING);
             first[..PACK].copy_from_slice(others);

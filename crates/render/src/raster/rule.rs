@@ -34,6 +34,7 @@ impl Rule for Usual {
     const QUEUES: usize = SMALL.len();
     const IN_TILES: bool = true;
     type Edges<S: Simd> = UsualEdges<S>;
+    // In boxes of 16 x 16 pixels, edge functions may exceed 2^24, the limit of exact f32.
     type LastEdges<S: Simd> = WholeEdges<S>;
 }
 
@@ -44,6 +45,7 @@ pub(crate) struct Fine;
 impl Rule for Fine {
     const GRID: Grid = Grid::Fine;
     type Edges<S: Simd> = FineEdges<S>;
+    // The last queue is unused: edge functions in its boxes would exceed 32 bits.
     type LastEdges<S: Simd> = FineEdges<S>;
 }
 

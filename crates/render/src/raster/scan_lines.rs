@@ -107,6 +107,7 @@ impl ScanLines {
             }
             let way = x - both(|row| row.left);
             let depth = both(|row| row.depth) + both(|row| row.per_pixel) * way;
+            // Rounding must not move a depth beyond the depths of the corners.
             let (low, high) = (f32x16::splat(simd, self.low), f32x16::splat(simd, self.high));
             let depth = depth.simd_gt(low).select(depth, low);
             let depth: f32x16<S> = depth.simd_lt(high).select(depth, high);

@@ -119,6 +119,7 @@ impl<'a> Setup<'a> {
         (bins, brush): (&mut Bins, &mut Brush<'_>),
     ) {
         for some in triangles.chunks(PACK) {
+            // The last pack is filled up with copies, which are masked out by the count.
             let mut last = [some[0]; PACK];
             let sixteen = some.first_chunk().unwrap_or_else(|| {
                 last[..some.len()].copy_from_slice(some);
@@ -144,6 +145,7 @@ impl<'a> Setup<'a> {
         let (low_x, high_x) = (x0.min(x1).min(x2), x0.max(x1).max(x2));
         let (low_y, high_y) = (y0.min(y1).min(y2), y0.max(y1).max(y2));
 
+        // The first centre in the box and the one after the last, as in `PixelBox::reached_on`.
         let (half, log2) = (R::GRID.parts() / 2, R::GRID.parts().trailing_zeros());
         let [least, most] = self.reach::<R, N>(bins);
         let (least, most) = (R::GRID.offset(least), R::GRID.offset(most));
@@ -170,6 +172,8 @@ impl<'a> Setup<'a> {
             _ => !area.simd_eq(0),
         };
         let there = mask32x16::from_bitmask(simd, (1 << count) - 1);
+        // A corner beyond the planes leaves no valid box, so the triangle is always clipped. A
+        // wide one is skipped if its box is not in the picture.
         let odd = (beyond | (wide & seen)) & there;
         let plain = seen & faces & there & !odd;
         // Only the surviving triangles are copied into queues or bins.
@@ -181,6 +185,7 @@ impl<'a> Setup<'a> {
             );
             let number = number + self.base.cast_signed();
             let mut pack = [x0, y0, x1, y1, x2, y2, d0, d1, d2, number];
+            // Queues of unsnapped triangles hold the bits of f32 corners in the same rows.
             if R::UNSNAPPED && self.has_small::<R>() {
                 for corner in 0..3 {
                     let [x, y] = self.unsnapped_corners(simd, triangles, corner);
@@ -188,6 +193,7 @@ impl<'a> Setup<'a> {
                 }
             }
             let boxes = [left, top, right, bottom];
+            // Front faces run counter-clockwise (negative area), or clockwise if mirrored.
             let front = if self.draw.mirrored { area.simd_gt(0) } else { area.simd_lt(0) };
             let (plain, front) = (plain.to_bitmask(), front.to_bitmask());
             let clockwise = area.simd_gt(0).to_bitmask();
@@ -240,6 +246,7 @@ impl<'a> Setup<'a> {
     ) {
         let [left, top, right, bottom] = boxes;
         let side = (right - left).max(bottom - top);
+        // With several samples, triangles of more than a few pixels wait for their tiles.
         let in_tiles = N > 1 && R::IN_TILES && bins.tile_queues.used;
         let tiles = bins.tile_queues.boxes(boxes);
         let mut above = 0;
@@ -268,6 +275,7 @@ impl<'a> Setup<'a> {
             let corners = each(triangles[lane].vertices, |i| self.vertices[i as usize]);
             let number = self.base + triangles[lane].number;
             let cutout = cutout >> lane & 1 != 0;
+            // These lists are filled before the triangle is added, so their indices match.
             if R::UNSNAPPED {
                 let own = each(triangles[lane].vertices, |i| self.unsnapped[i as usize]);
                 bins.unsnapped.push(own);
@@ -312,11 +320,13 @@ impl<'a> Setup<'a> {
         some: u64,
         front: u64,
     ) -> [(u64, u64, bool); 2] {
+        // The common case: all triangles of the draw are of one kind.
         if !self.choosy {
             let (opaque, transparent) = if self.transparent { (0, some) } else { (some, 0) };
             return [(opaque, 0, false), (transparent, 0, true)];
         }
         let [mut plain, mut cutout, transparent] = self.kinds_one_by_one(triangles, some);
+        // Back faces of transparent parts are kept in this case.
         if self.draw.culls_opaque {
             (plain, cutout) = (plain & front, cutout & front);
         }
@@ -376,6 +386,7 @@ impl<'a> Setup<'a> {
             let bins = bins.of(kind == Kind::Transparent);
             let number = self.base + triangle.number;
             let cutout = kind == Kind::Cutout;
+            // Pieces of a clipped triangle have new corners, without known colours.
             if N == 1 && is_whole && bins.hits.colored {
                 bins.color_next(brush.corners(number, triangle.vertices, area > 0));
             }
@@ -397,6 +408,7 @@ impl<'a> Setup<'a> {
             None => Kind::Not,
             Some(pipeline) => match &self.pipelines[pipeline as usize] {
                 Pipeline::Shaded(Shaded { cutout: Some(_), .. }) => {
+                    // The table spares opaque triangles the alpha test, and drops empty ones.
                     match self.holes.get(number as usize) {
                         Some(Holes::Nowhere) => Kind::Plain,
                         Some(Holes::Everywhere) => Kind::Not,

@@ -95,6 +95,7 @@ fn draw<S: Simd, E: Edges<S>, const N: usize, const COLORED: bool>(
     let shifts = lanes.edges.shifts::<N>(&sample_positions);
     // One sample after the other: list the covered pixels, then compute depths and colours.
     for (sample, shift) in shifts.into_iter().enumerate() {
+        // A single sample lies at the centre, which saves adding its offset.
         let shift = (N > 1).then_some([shift]);
         lanes.scan(shift.as_ref(), covered);
         let mut mix = None;
@@ -122,6 +123,7 @@ fn draw<S: Simd, E: Edges<S>, const N: usize, const COLORED: bool>(
                         let edges = [lanes.edges.function(1, at), lanes.edges.function(2, at)];
                         Some(mix.colors(own.lanes, edges, [x, y]))
                     }
+                    // 0 is an unknown colour: the pixel is shaded later, if it is visible.
                     _ => Some(u32x16::splat(simd, 0)),
                 };
                 let pixels = Pixels { x, y, depth: depth.bitcast(), number, color };
@@ -143,6 +145,7 @@ pub(super) fn each_in<S: Simd, E: Edges<S>, const N: usize>(
     let lanes = Lanes::<S, E>::new(pack[0].simd, pack, sample_positions.reach::<N>());
     let shifts = lanes.edges.shifts::<N>(sample_positions);
     lanes.scan(Some(&shifts), covered);
+    // Triangles in several tiles have pixels outside this one.
     if lanes.bounds().intersection(within) != lanes.bounds() {
         lanes.keep(within, covered);
     }
@@ -222,6 +225,7 @@ impl<S: Simd, E: Edges<S>> Lanes<S, E> {
                     Some(shifts) if N > 1 => self.covered_samples(shifts, at, pixels),
                     _ => (self.edges.covered(at), pixels),
                 };
+                // The list has room for every pixel; the remainder only saves a bounds check.
                 let to = count % MOST;
                 // A compressing store appends only the lanes that cover the pixel.
                 listed.compress(some).store_slice(&mut covered.pixels[to..to + PACK]);
@@ -256,6 +260,7 @@ impl<S: Simd, E: Edges<S>> Lanes<S, E> {
     /// Removes the listed pixels outside a box.
     #[inline(always)]
     fn keep(&self, within: PixelBox, covered: &mut Covered) {
+        // The list is compacted in place: writing never overtakes reading.
         let mut kept = 0;
         for at in (0..covered.count).step_by(PACK) {
             let pixels = i32x16::from_slice(self.left.simd, &covered.pixels[at..at + PACK]);
@@ -289,6 +294,7 @@ impl<S: Simd, E: Edges<S>> Lanes<S, E> {
     ) {
         for at in (0..covered.count).step_by(PACK) {
             let pixels = i32x16::from_slice(self.left.simd, &covered.pixels[at..at + PACK]);
+            // A lane is now a pixel of the list; the numbers of its triangle are permuted into it.
             let by = [(pixels >> 4) & 15, (pixels >> 8) & 15];
             let lanes = pixels & 15;
             let low = permute(self.low.bitcast(), lanes).bitcast::<f32x16<S>>();

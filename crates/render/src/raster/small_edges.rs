@@ -50,6 +50,7 @@ pub(crate) trait Edges<S: Simd>: Copy {
     /// centres.
     #[inline(always)]
     fn bounds([p, q, r]: Corners<S>, [least, most]: [[i32; 2]; 2]) -> Boxes<S> {
+        // As in `PixelBox::reached_on`: the arithmetic shifts round down.
         let (half, log2) = (Self::GRID.parts() / 2, Self::GRID.parts().trailing_zeros());
         let (least, most) = (Self::GRID.offset(least), Self::GRID.offset(most));
         [

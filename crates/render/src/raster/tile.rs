@@ -136,6 +136,7 @@ impl Visibility {
                 dispatch!(level, simd => self.draw_plain::<_, N>(simd, bins, (tile, conversion)));
             }
         }
+        // With one sample, small triangles are hits already.
         if N == FOUR {
             dispatch!(level, simd => self.draw_small(simd, frame.bins(), tile));
         }
@@ -144,6 +145,7 @@ impl Visibility {
         let mut cutouts = Cutouts::default();
         for bins in frame.bins() {
             dispatch!(level, simd => self.draw_hits::<_, N>(simd, bins, tile));
+            // The other rules draw opaque and alpha-tested triangles in one pass.
             if plan.variants.coverage != Coverage::Exact {
                 dispatch!(level, simd => {
                     self.draw_by_variant::<_, N>(simd, (plan, frame), bins, tile);
@@ -165,6 +167,7 @@ impl Visibility {
 
     fn clear(&mut self, bounds: PixelBox, sample_positions: SamplePositions) {
         self.sample_positions = sample_positions;
+        // Entries of blocks that are not `written` are never read, so the buffer is not cleared.
         (self.written, self.whole, self.colored) = (0, 0, 0);
         self.large.clear();
         self.farthest.fill(0);
@@ -214,6 +217,7 @@ impl Visibility {
     pub(crate) fn depths(&self, level: Level) -> Option<[f32; 2]> {
         let (mut low, mut high) = (u32::MAX, 0);
         for block in (0..BLOCK_PIXELS).filter(|block| self.shows(*block)) {
+            // A fully covered block has bounds instead of entries.
             let [own_low, own_high] = if self.whole(block).is_some() {
                 [self.farthest[block], self.nearest[block]]
             } else {
@@ -237,6 +241,7 @@ impl Visibility {
         let block = block_at(x, y);
         let mut samples = [0; FOUR];
         if self.shows(block) {
+            // A fully covered block gets its entries only now.
             self.write_samples(level, block);
             for (sample, word) in samples[..count].iter_mut().enumerate() {
                 *word = self.block_samples(block)[sample * BLOCK_PIXELS + within(x, y)];
@@ -279,6 +284,7 @@ impl Visibility {
             for sample in 0..N {
                 self.plane::<N>(block, sample).fill(0);
             }
+            // The triangle that was only noted comes first.
             if self.whole & bit != 0 {
                 self.expand::<N>(level, block);
             }
@@ -370,6 +376,7 @@ impl Visibility {
         bins: &Bins,
         (tile, conversion): (usize, Option<Conversion<'_>>),
     ) {
+        // Colours are stored for a single sample per pixel only.
         if let Some(conversion) = conversion.filter(|_| N == 1 && bins.hits.colored) {
             return simd.vectorize(
                 #[inline(always)]
@@ -395,6 +402,7 @@ impl Visibility {
         for &number in &bins.tiles[tile].large {
             let large = &bins.large[number as usize];
             if !large.cutout {
+                // Pieces of clipped triangles have no known colours; they are shaded later.
                 let colors = bins.large_colors.get(number as usize).and_then(Option::as_ref);
                 let paint = colors.map(|colors| Paint::new(large, colors, conversion));
                 self.draw_large::<S, 1>(simd, large, paint.as_ref());

@@ -113,9 +113,11 @@ impl TileQueues {
         if (all.width(), all.height()) == (1, 1) {
             return self.add_to((all.top * columns + all.left) as usize, size, pack, some);
         }
+        // For scattered triangles, the masks of most tiles would be nearly empty.
         if i64::from(all.width()) * i64::from(all.height()) > FEW_TILES {
             return self.add_one_by_one(size, (pack, boxes), some.to_bitmask());
         }
+        // A few tiles: each gets its share by a mask.
         for row in all.top..all.bottom {
             for column in all.left..all.right {
                 let [left, top, right, bottom] = *boxes;
@@ -139,6 +141,7 @@ impl TileQueues {
         let simd = left.simd;
         let (none, columns, rows) =
             (i32x16::splat(simd, -1), i32x16::splat(simd, columns), i32x16::splat(simd, rows));
+        // Lanes outside the mask are replaced by values that change no minimum or maximum.
         PixelBox {
             left: some.select(*left, columns).reduce_min(),
             top: some.select(*top, rows).reduce_min(),
@@ -174,6 +177,7 @@ impl TileQueues {
     fn add_to<S: Simd>(&mut self, tile: usize, size: usize, pack: &Pack<S>, some: mask32x16<S>) {
         let page = self.page(tile, size);
         let at = page.count;
+        // A compressing store writes sixteen numbers; a page has room for its overflow.
         for (row, values) in page.rows.iter_mut().zip(pack) {
             values.compress(some).store_slice(&mut row[at..at + PACK]);
         }
@@ -194,6 +198,7 @@ impl TileQueues {
     #[cold]
     #[inline(never)]
     fn turn(&mut self, tile: usize, size: usize) -> &mut Page {
+        // Pages of earlier frames are reused first.
         if self.handed_out == self.pages.len() {
             self.pages.push(Page::new(0));
         }

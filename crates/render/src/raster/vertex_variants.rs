@@ -28,6 +28,7 @@ pub(crate) fn transform(
         let (screen, rows) = (Screen32::new(screen), rows(order, first, out.len()));
         dispatch!(level, simd => chunk(simd, &screen, rows, out));
     }
+    // Coarser subpixels come from a second rounding.
     if matches!(variants.subpixels, Subpixels::Bits0 | Subpixels::Bits4) {
         dispatch!(level, _ => coarse(variants, out));
     }
@@ -88,6 +89,8 @@ fn coarse(variants: Variants, out: &mut [ScreenVertex]) {
     };
     for vertex in out {
         let Snapped { x, y } = vertex.at();
+        // The nearest multiple of a power of two. A vertex beyond the planes may overflow, and
+        // keeps its marker in x.
         let snap = |i: i32| i.wrapping_add(parts / 2) & -parts;
         let at = Snapped { x: if vertex.is_inside() { snap(x) } else { x }, y: snap(y) };
         *vertex = ScreenVertex::placed(at, vertex.depth, vertex.inverse_w);
@@ -133,6 +136,7 @@ impl Screen32 {
         let clip = self.clip(place);
         let [x, y, z, w] = clip;
         let [gx, gy] = [self.guard[0] * w, self.guard[1] * w];
+        // The planes of `Screen::distances`; `&` compiles to SIMD code without branches.
         let inside = (w - z >= 0.0)
             & (z >= 0.0)
             & (gx + x >= 0.0)
@@ -141,6 +145,7 @@ impl Screen32 {
             & (gy - y >= 0.0);
         let inverse_w = 1.0 / w;
         let depth = z * inverse_w;
+        // Comparisons also turn NaN into 0.
         let depth = if depth > 0.0 { depth } else { 0.0 };
         let depth = if depth < 1.0 { depth } else { 1.0 };
         let [x, y] = self.pixels(clip);

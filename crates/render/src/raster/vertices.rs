@@ -37,6 +37,7 @@ pub(crate) fn transform(
 #[inline(always)]
 fn chunk<S: Simd>(_: S, screen: &Screen, [x, y, z]: [&[f32]; 3], out: &mut [ScreenVertex]) {
     for (((out, x), y), z) in out.iter_mut().zip(x).zip(y).zip(z) {
+        // Positions are stored in f32 and transformed in f64.
         *out = screen.vertex(screen.clip([f64::from(*x), f64::from(*y), f64::from(*z)]));
     }
 }
@@ -49,6 +50,7 @@ pub(crate) fn fetch_vertices<S: Simd>(
     vertices: &[ScreenVertex],
     number: impl Fn(usize) -> u32,
 ) -> [i32x16<S>; 4] {
+    // Without vertices, numbers cannot fall back to the last one.
     if vertices.is_empty() {
         return [i32x16::splat(simd, 0); 4];
     }
@@ -79,6 +81,7 @@ pub(crate) fn fetch_corners<S: Simd>(
 /// Transposes sixteen rows of four numbers to four rows of sixteen.
 #[inline(always)]
 pub(crate) fn fetch<S: Simd>(simd: S, row: impl Fn(usize) -> [i32; 4]) -> [i32x16<S>; 4] {
+    // The first round separates columns 0 and 2 from 1 and 3, the second 0 from 2 and 1 from 3.
     let (even_low, odd_low) = four(simd, 0, &row).deinterleave(four(simd, 4, &row));
     let (even_high, odd_high) = four(simd, 8, &row).deinterleave(four(simd, 12, &row));
     let (a, c) = even_low.deinterleave(even_high);

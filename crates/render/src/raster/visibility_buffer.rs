@@ -89,6 +89,7 @@ fn entries<S: Simd>(
     depth: f32x16<S>,
     number: u32,
 ) -> (f64x8<S>, f64x8<S>) {
+    // 0 is the entry of the background, which never passes the depth test.
     let nothing = u32x16::splat(simd, 0);
     let depth = covered.select(format.keys(depth), nothing);
     let number = covered.select(u32x16::splat(simd, !number), nothing);
@@ -107,6 +108,7 @@ pub(crate) fn depths_of<S: Simd>(simd: S, visibility: &[u64]) -> [u32; 2] {
     let halves: &[u32] = bytemuck::cast_slice(visibility);
     for sixteen in halves.chunks_exact(32) {
         let upper = u32x16::from_slice(simd, &sixteen[..16]);
+        // Numbers stay inverted here, so triangles have the top bit.
         let (number, key) = upper.deinterleave(u32x16::from_slice(simd, &sixteen[16..]));
         // Lines have the upper half of all numbers; the background has the lowest entry.
         let is_triangle = number.simd_ge(1 << 31);

@@ -97,6 +97,7 @@ impl<W: Copy> WorkList<W> {
         let places = self.pieces.len()..;
         self.pieces.extend(places.zip((0..count).step_by(piece)).map(|(place, from)| {
             let to = count.min(from + piece);
+            // The home only decides which thread takes the piece, so one element is enough.
             let home = home(&screen, plan.size, position(from.midpoint(to)));
             Work { draw: i, what, from, to, place, home }
         }));
@@ -121,9 +122,11 @@ impl<W: Copy> WorkList<W> {
     /// Distributes `tiles` tiles: each thread starts at the home of its pieces.
     pub(crate) fn shares_of_tiles(&self, tiles: usize) -> WorkStealing {
         let threads = rayon::current_num_threads();
+        // Few pieces give no useful starts, so the tiles are divided evenly.
         if self.pieces.len() < 4 * threads {
             return WorkStealing::new(tiles, threads);
         }
+        // The pieces were sorted by home during setup, so these starts ascend.
         WorkStealing::beginning_at(
             tiles,
             (0..threads).map(|i| self.pieces[i * self.pieces.len() / threads].home),
@@ -145,6 +148,7 @@ impl What {
                 mesh.positions()[corner.position as usize].map(f64::from)
             }
             Self::Edges => match mesh.edge_order().edges[i].vertices[0] {
+                // An edge that no triangle uses has no vertex in draw order; any home will do.
                 NONE => [0.0; 3],
                 vertex => order.position(vertex),
             },
@@ -157,6 +161,7 @@ impl What {
 fn home(screen: &Screen, size: Size, place: [f64; 3]) -> usize {
     let (at, shift) = (screen.pixels(screen.clip(place)), screen.shift_in_pixels());
     let tiles = tiles_of(size);
+    // The cast saturates and turns NaN into 0, so every position gets a tile.
     let [column, row] = [0, 1]
         .map(|axis| (((at[axis] - shift[axis]) as i32) / TILE).clamp(0, (tiles[axis] - 1).max(0)));
     usize::try_from(row * tiles[0] + column).expect("not negative")

@@ -20,6 +20,7 @@ pub(super) fn enlarge(level: Level, drawn: &Picture, size: Size, into: &mut Pict
         || Means::new(width),
         |means, (y, out)| {
             let nearest = y / 2;
+            // The upper one of a pair of rows lies between its drawn row and the drawn row above.
             let is_upper = y.is_multiple_of(2);
             let other = if is_upper { nearest.saturating_sub(1) } else { nearest + 1 };
             let (nearest, other) = (row(nearest), row(other.min(height - 1)));
@@ -52,19 +53,23 @@ impl Means {
     fn enlarge_row(&mut self, nearest: &[[u8; 4]], other: &[[u8; 4]], out: &mut [[u8; 4]]) {
         let Self { sums, pairs: [left, right] } = self;
         let count = 4 * nearest.len();
+        // Vertical weights first, as 3 and 1: a sum is at most 1020.
         let rows = nearest.as_flattened().iter().zip(other.as_flattened());
         for (sum, (a, b)) in sums[4..].iter_mut().zip(rows) {
             *sum = 3 * u16::from(*a) + u16::from(*b);
         }
+        // The border pixels are repeated, so every sum has two neighbours.
         sums.copy_within(4..8, 0);
         sums.copy_within(count..count + 4, count + 4);
         let (before, near, after) = (&sums[..count], &sums[4..][..count], &sums[8..][..count]);
         let means = left.as_flattened_mut().iter_mut().zip(right.as_flattened_mut());
         for ((means, near), (before, after)) in means.zip(near).zip(before.iter().zip(after)) {
+            // Horizontal weights, 3 and 1 again: sixteenths in all, and 8 rounds to the nearest.
             let near = 3 * near + 8;
             *means.0 = ((near + before) >> 4).to_le_bytes()[0];
             *means.1 = ((near + after) >> 4).to_le_bytes()[0];
         }
+        // Left and right means were stored apart for SIMD; here they alternate.
         let mut pairs = out.chunks_exact_mut(2);
         for (pair, (left, right)) in (&mut pairs).zip(left.iter().zip(&*right)) {
             pair.copy_from_slice(&[*left, *right]);

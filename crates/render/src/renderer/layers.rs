@@ -64,6 +64,7 @@ impl Renderer {
         // Runs on a drawing thread, like a frame.
         rayon::scope(|_| {
             plan.prepare();
+            // Layers read the normals of faces, lit or not.
             for draw in plan.draws.iter().filter(|draw| draw.normals == Normals::Face) {
                 draw.model.mesh.prepare(Derived::PolygonNormals);
             }
@@ -90,6 +91,7 @@ impl Renderer {
                         if !watch.goes_on() {
                             return;
                         }
+                        // An empty tile keeps the background that the layers begin with.
                         if frame.is_empty(tile) && !frame.is_layered(tile) {
                             continue;
                         }
@@ -210,6 +212,7 @@ impl<'a> Source<'a> {
         let world_from_camera = camera.world_from_camera(AxesConvention::OpenGl);
         let world = DMat3::from_mat4(world_from_camera);
         let turn = (layers.normals == NormalSpace::World).then_some(world);
+        // Layers of floats depend on the point, all others on the triangle alone.
         let has_points = layers.values.keys().any(|it| it.number_type() == LayerType::F32);
         let has_normals = layers.values.contains_key(&Layer::Normal);
         let width = shot.size.width;
@@ -267,6 +270,7 @@ impl<'a> Source<'a> {
             corners: [a, b - a, c - a],
             in_world: [self.world_from_camera.transform_point3(a), world(b - a), world(c - a)],
             normals,
+            // Turned towards the camera.
             normal: if across.dot(a) > 0.0 { -across } else { across },
             uvs: uvs(draw, number),
         }
@@ -319,6 +323,7 @@ impl<'a> Source<'a> {
                 let surface = of(cached, self, number);
                 points.clear();
                 let mut place = from;
+                // The run may span several rows of the block; weights are computed row by row.
                 while place < to {
                     let (row, next) = (place / SIDE, to.min((place / SIDE + 1) * SIDE));
                     let inside = next.min(row * SIDE + columns);
@@ -327,6 +332,7 @@ impl<'a> Source<'a> {
                         // Ids are the same in the whole triangle.
                         let weights = surface.shape.as_ref().map(|it| it.weights.of_row([left, y]));
                         let [a, b, c] = weights.unwrap_or_default();
+                        // A band is one row of tiles, so rows count from its top.
                         let begin = y.cast_unsigned() as usize % TILE_SIDE * self.width + first;
                         points.extend((place - row * SIDE..inside - row * SIDE).map(|column| {
                             (begin + column, DVec3::new(a[column], b[column], c[column]))
@@ -351,6 +357,7 @@ impl<'a> Source<'a> {
     ) {
         let [object, part, material, polygon] = surface.ids;
         let shape = surface.shape.as_ref();
+        // The kind of each layer is matched once for all points.
         for (layer, rows) in band {
             match (layer, rows, shape) {
                 (Layer::Depth, Rows::F32(rows), Some(shape)) => {
@@ -360,6 +367,7 @@ impl<'a> Source<'a> {
                     let position = point(shape.corners, weights);
                     match self.projection {
                         Projection::Perspective => [position.length() as f32],
+                        // Parallel rays start in the camera's plane, so their length is the depth.
                         Projection::Orthographic => [-position.z as f32],
                     }
                 }),

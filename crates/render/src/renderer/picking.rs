@@ -107,6 +107,7 @@ impl Renderer {
     }
 
     fn explain_in<T: ShadingNumber>(&self, plan: &FramePlan, at: [i32; 2]) -> PixelColor {
+        // The tables of a frame, prepared for a single pixel.
         let (mut terms, mut lit) = (LightTerms::<T>::default(), Lit::<T>::default());
         terms.prepare(plan);
         lit.prepare(plan);
@@ -121,6 +122,7 @@ impl Renderer {
         let [columns, _] = tiles_of(plan.size);
         let tile = usize::try_from(y / TILE * columns + x / TILE).expect("not negative");
         let bounds = bounds_of(tile, plan.size);
+        // Visibility is not kept after a frame, so the tile is rasterised again.
         let mut tile_seen = TileLayers::default();
         tile_seen.draw(level, plan, frame, (tile, bounds));
         let depths = tile_seen.depths(level);
@@ -218,6 +220,7 @@ impl Renderer {
         else {
             return drawn;
         };
+        // A drawn pixel covers 2 x 2 pixels of the finished picture.
         let row = |y: usize| (0..size.width).map(move |x| y / 2 * plan.size.width + x / 2);
         (0..size.height).flat_map(row).map(|at| drawn[at]).collect()
     }

@@ -77,8 +77,10 @@ impl Renderer {
             if count == 0 {
                 continue;
             }
+            // If cancelled, the remaining windows stay as they are.
             let Ok(colors) = larger.averaged(plan, window, &|| watch.goes_on()) else { break };
             let first_row = i32::try_from(self.first_row).expect("below 2^26");
+            // In a band, rows count from its first row of tiles.
             let at = [window.left, window.top - first_row * TILE];
             copy(&colors, window, at, self.picture.pixels_mut(), plan.size.width);
             (0..count).for_each(|_| watch.tile_is_painted());
@@ -124,6 +126,7 @@ fn magnified(plan: &FramePlan, window: PixelBox) -> FramePlan {
         enlarged: None,
         samples: Samples::One,
         lit_by_sample: false,
+        // The window's corner becomes the first pixel of the larger picture.
         shift: [window.left, window.top].map(|at| at * MAGNIFIED * SUBPIXELS),
         spacing: 1.0,
         line_width: plan.line_width * MAGNIFIED,

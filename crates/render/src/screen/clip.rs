@@ -112,6 +112,7 @@ impl Screen {
         Self {
             rows: clip_from_object.transpose().to_cols_array_2d(),
             half,
+            // (x / w + 1) half stays within GUARD, so a coordinate stays within 2^28 subpixels.
             guard: half.map(|half| GUARD / half - 1.0),
             shift: [0; 2],
             parts: f64::from(SUBPIXELS),
@@ -147,6 +148,7 @@ impl Screen {
         let x = middle[0] / self.half[0] - 1.0;
         let y = 1.0 - middle[1] / self.half[1];
         let [of_x, of_y, z, w] = self.rows;
+        // After division by w, subtracting a multiple of w moves the middle to 0.
         let less = |row: [f64; 4], by: f64| std::array::from_fn(|i| row[i] - by * w[i]);
         let rows = [less(of_x, x), less(of_y, y), z, w];
         Self { rows, guard: [half[0] / self.half[0], half[1] / self.half[1]], ..self }
@@ -172,6 +174,7 @@ impl Screen {
 
     /// Returns the largest change of each distance per unit of length in object space.
     pub(crate) fn slopes(&self) -> [f64; 6] {
+        // Distances are linear in the position, so the columns of the matrix give the gradient.
         let along = |axis: usize| self.distances(self.rows.map(|row| row[axis]));
         let [x, y, z] = [along(0), along(1), along(2)];
         std::array::from_fn(|i| DVec3::new(x[i], y[i], z[i]).length())
@@ -179,6 +182,7 @@ impl Screen {
 
     /// Returns whether a position is inside the clipping planes by more than rounding errors.
     pub(crate) fn holds(&self, clip: Clip) -> bool {
+        // Rounding errors grow with the coordinates, so the margin does, too.
         let least = 1e-9 * clip.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
         self.distances(clip).iter().all(|distance| *distance > least)
     }
@@ -288,6 +292,7 @@ fn between(inner: &Clip, outer: &Clip, t: f64) -> Clip {
 
 /// Returns whether the corners of a triangle in clip space run counter-clockwise for the observer.
 pub(crate) fn faces_observer(corners: [Clip; 3]) -> bool {
+    // Without division, the sign of the triple product also holds for corners behind the eye.
     let [p, q, r] = corners.map(|[x, y, _, w]| DVec3::new(x, y, w));
     p.dot(q.cross(r)) > 0.0
 }

@@ -141,6 +141,7 @@ struct Edge {
 impl Edge {
     #[inline(always)]
     fn new(p: Snapped, q: Snapped) -> Self {
+        // Products of two coordinates need 64 bits.
         let (px, py) = (i64::from(p.x), i64::from(p.y));
         let (qx, qy) = (i64::from(q.x), i64::from(q.y));
         Self { a: py - qy, b: qx - px, c: px * qy - py * qx }
@@ -295,6 +296,7 @@ pub(crate) const NARROW_SIDE: i32 = 1 << 20;
 /// Returns whether a triangle exceeds one of these limits.
 #[expect(clippy::cast_precision_loss, reason = "as it is found for sixteen triangles at a time")]
 pub(crate) fn is_wide([p, q, r]: [Snapped; 3]) -> bool {
+    // The same operations as for sixteen triangles at once, so that both agree.
     let (ux, uy, vx, vy) = (q.x - p.x, q.y - p.y, r.x - p.x, r.y - p.y);
     let rough = ux as f32 * vy as f32 - uy as f32 * vx as f32;
     let is_long = [ux, uy, vx, vy].iter().any(|side| side.abs() > NARROW_SIDE);

@@ -21,6 +21,7 @@ pub(crate) fn weighed<M: Lanes>(
     [second, third]: [M::R; 2],
     Vec3([w0, w1, w2]): Vec3<M::R>,
 ) -> ([M::R; 2], M::R) {
+    // w0, w1 and w2 are 1 / w of the corners: 1 / w is linear on the screen.
     let w = lanes.lift(1.0) / (w0 + second * (w1 - w0) + third * (w2 - w0));
     match interpolation {
         Interpolation::Affine => ([second, third], w),

@@ -37,6 +37,7 @@ impl SamplePositions {
         let mut i = 0;
         while i < 2 * FOUR {
             let (sample, axis) = (i / 2, i % 2);
+            // Positions count from the upper left corner; the centre is at 128 subpixels.
             let shift = places[sample][axis] * (256 / parts) - 128;
             positions.shifts[sample][axis] = shift;
             if shift < positions.least[axis] {
@@ -112,7 +113,9 @@ const fn grid<const PASSES: usize>(side: i32) -> [SamplePositions; PASSES] {
     let (mut passes, half, parts) = ([SamplePositions::MIDDLE; PASSES], side / 2, 2 * side);
     let mut i = 0;
     while i < half * half {
+        // From the centre outwards, so that the nearest samples come first.
         let (x, y) = (side - 1 - 2 * (i % half), side - 1 - 2 * (i / half));
+        // Quarter turns keep each pass balanced around the centre.
         let turned = [[x, y], [parts - y, x], [parts - x, parts - y], [y, parts - x]];
         passes[i as usize] = SamplePositions::new(parts, turned);
         i += 1;

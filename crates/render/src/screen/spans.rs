@@ -43,6 +43,8 @@ impl Row {
             let b = sign
                 * ((q[0] - p[0]) * (middle(i64::from(y)) - p[1])
                     - (q[1] - p[1]) * (middle(0) - p[0]));
+            // e >= 0 bounds the row from the left if e grows to the right, else from the right.
+            // Both divisions round inwards.
             match a {
                 0 => {}
                 1.. => first = first.max(-(b.div_euclid(a))),
@@ -82,6 +84,7 @@ impl Row {
     fn weights(&self, x: f64) -> Weights {
         let [second, third] = [0, 1].map(|i| self.at_start[i] + x * self.step[i]);
         let [w0, w1, w2] = self.by_w;
+        // 1 / w is linear on the screen.
         let w = 1.0 / (w0 + second * (w1 - w0) + third * (w2 - w0));
         [second * w1 * w, third * w2 * w]
     }

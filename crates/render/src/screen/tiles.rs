@@ -47,6 +47,7 @@ pub(crate) fn lanes_place<S: Simd, const N: usize>(
     y: i32x16<S>,
     sample: usize,
 ) -> i32x16<S> {
+    // Shifts and masks divide by 8: the block, and the place in it.
     let block = ((y >> 3) << 3) + (x >> 3);
     let first = (block * (N * BLOCK_PIXELS) as i32) + (sample * BLOCK_PIXELS) as i32;
     first + ((y & 7) << 3) + (x & 7)

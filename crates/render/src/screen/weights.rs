@@ -43,6 +43,7 @@ impl Weights {
             return Self::Cut(HomogeneousWeights::new(plan, draw, number, shift));
         }
         let grid = plan.variants.grid();
+        // Moving all corners one way equals moving the sample the other way.
         let corners = own.map(|vertex| vertex.at().seen_from(grid.offset(shift)));
         match plan.variants.interpolation {
             Interpolation::EverySixteen => Self::Spans(corners, w.map(|w| 1.0 / w), grid),
@@ -68,6 +69,7 @@ impl Weights {
                 with_first(Row::new(*corners, *by_w, y, *grid).at(x))
             }
             Self::Edges(triangle, w) => {
+                // Without an area, the first corner gets all the weight.
                 let parts = triangle.as_ref().map(|triangle| barycentric(triangle, pixel));
                 let by_w = with_first(parts.unwrap_or_default()) / *w;
                 by_w / by_w.element_sum()
@@ -88,6 +90,7 @@ impl Weights {
             Self::Spans(..) => None,
             Self::Edges(triangle, w) => {
                 let by_w = with_first(barycentric(triangle.as_ref()?, pixel)) / *w;
+                // The sum is 1 / w of the point: negative behind the observer, close to 0 far away.
                 let sum = by_w.element_sum();
                 (sum >= FAR / w.max_element()).then(|| by_w / sum)
             }
@@ -146,11 +149,13 @@ impl QuickWeights {
     #[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
     pub(crate) fn of_row(&self, [x, y]: [i32; 2]) -> [[f64; 8]; 3] {
         let Weights::Edges(Some(triangle), _) = &self.weights else {
+            // The other kinds of weights are computed pixel by pixel.
             let all: [DVec3; 8] = std::array::from_fn(|i| {
                 self.weights.at([x + i32::try_from(i).expect("below eight"), y])
             });
             return [0, 1, 2].map(|corner| all.map(|weights| weights[corner]));
         };
+        // Edge functions grow by constant steps, exactly, in integers.
         let (first, [step, _]) = (triangle.edges_at(x, y), triangle.steps());
         let mut row = [[0.0; 8]; 3];
         for (corner, row) in row.iter_mut().enumerate() {
@@ -160,6 +165,7 @@ impl QuickWeights {
                 edge += step[corner];
             }
         }
+        // One division per pixel normalises all three weights.
         let [a, b, c] = &mut row;
         for ((a, b), c) in a.iter_mut().zip(b).zip(c) {
             let per = 1.0 / (*a + *b + *c);
@@ -244,6 +250,7 @@ impl HomogeneousWeights {
         let (x, y) = (f64::from(x), f64::from(y));
         let [m0, m1, m2] = each(self.planes, |[a, b, c]| {
             let n = a * x + (b * y + c);
+            // Beyond an edge, the opposite corner gets no weight.
             if n > 0.0 { n } else { 0.0 }
         });
         // Without any positive weight the pixel is outside all edges: the centroid is used.
@@ -278,6 +285,7 @@ impl HomogeneousWeights {
         );
         let sum = m0 + m1 + m2;
         let inside = sum.simd_gt(0.0);
+        // As in `at`, pixels outside all edges get the centroid.
         let (m0, m1, m2) = (inside.select(m0, one), inside.select(m1, one), inside.select(m2, one));
         let per = one / inside.select(sum, one + one + one);
         let [w0, w1, w2] = self.w;

@@ -66,6 +66,7 @@ impl<T: Number, const PAGES: usize> Kernel<T> for Weigh<'_, T, PAGES> {
         for at in (0..fragments.len).step_by(M::LANES) {
             let slots = lanes.slots(&fragments.slots, at);
             let mut linear = [lanes.load(&to.linear[0], at), lanes.load(&to.linear[1], at)];
+            // Coordinates outside of 0 to 1 would extrapolate the attributes.
             if clamps {
                 let [second, third] = linear;
                 let first = Real::max(one - second - third, zero);
@@ -114,6 +115,7 @@ pub(crate) fn interpolate_spans<T: AttributeNumber>(
     let mut span = None;
     for i in 0..fragments.len {
         let slot = fragments.slots[i].cast_unsigned() as usize;
+        // Clipped triangles have no rows on the screen.
         if attributes.cut >> slot & 1 == 1 {
             continue;
         }
@@ -133,6 +135,7 @@ pub(crate) fn interpolate_spans<T: AttributeNumber>(
         if !span.as_ref().is_some_and(holds) {
             span = own.span(x);
         }
+        // Pixels outside of the triangle keep their perspective-correct weights.
         if let Some(span) = &span {
             let [second, third] = span.at(x);
             to.weights[0][i] = T::from_f64(second);

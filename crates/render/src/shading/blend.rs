@@ -65,6 +65,7 @@ impl Blend {
             }
         }
         match transparency {
+            // These methods blend layer over layer, without sums.
             Transparency::Exact | Transparency::Objects | Transparency::Threshold => {
                 self.mean = None;
             }
@@ -104,9 +105,11 @@ impl Blend {
     pub(crate) fn color(&self, place: usize) -> [u32; 3] {
         let behind = [0, 1, 2].map(|i: usize| self.colors[i][place]);
         let color = match &self.mean {
+            // Without weight the mean would be 0 / 0: the surface behind shows unchanged.
             Some(mean) if mean.weights[place] > 0.0 => mean.over(place, behind),
             _ => behind,
         };
+        // Rounding must not carry a colour beyond 24 bits.
         color.map(|part| (part as u32).min((1 << 24) - 1))
     }
 }

@@ -36,6 +36,7 @@ impl<T: ShadingNumber> Shader<T> {
         let group = group_of(context, number);
         let [x, y] = blocks.corner;
         self.fragments.list_full_block(number, [x, y]);
+        // The triangle has one colour: it is shaded once, and its blocks are filled.
         if group.path.full == FullPath::Fill {
             let color = self.first_color(&group);
             self.path_pixels.filled += blocks.pixels();
@@ -47,6 +48,7 @@ impl<T: ShadingNumber> Shader<T> {
         {
             return;
         }
+        // All other blocks get a fragment list each.
         blocks.each(|[column, row]| {
             self.fragments.list_full_block(number, [x + column, y + row]);
             let at = canvas.offset_of([column, row]);
@@ -117,10 +119,12 @@ impl Shader<f32> {
     ) -> bool {
         let context = group.context;
         let ShadingContext { level, plan, terms, .. } = *context;
+        // Emission must be the same at every pixel; maps need a list.
         let Some(glow) = shaded.extras.even_glow() else { return false };
         let texture = shaded.texture.as_deref();
         let source = shaded.texture.as_ref().map(|it| TexelSource::of_colors(context, it));
         let sampler = source.and_then(|source| source.sampler());
+        // A texture without texels cannot be sampled in lanes.
         if texture.is_some() && sampler.is_none() {
             return false;
         }
@@ -130,6 +134,7 @@ impl Shader<f32> {
             if new {
                 place(group, &self.attributes, of, &mut self.placed);
             }
+            // The triangle has no texture coordinates, or they are too large to be placed.
             if self.placed.placement.known & 1 == 0 {
                 // The fragment list fetches its own attributes.
                 self.attributes.forget();
@@ -145,6 +150,7 @@ impl Shader<f32> {
         let TexturePlacement { placement, far, scratch } = placed;
         let lights = shaded.light.is_some().then(|| tile.light(plan, group.pipeline, shaded));
         let needs_positions = lights.is_some_and(|lights| lights.needs_positions);
+        // Without normals, these attributes must not be reused for the next block.
         if !needs_positions {
             attributes.forget();
         } else if new {

@@ -45,6 +45,7 @@ impl<T: Number> TangentRows<T> {
     fn of_vertices(&mut self, draw: &Draw, attributes: &TriangleAttributes<T>) {
         let all = draw.model.mesh.tangents(draw.normal_source);
         for (slot, number) in attributes.numbers[..attributes.count].iter().enumerate() {
+            // On the back, T, B and N are all reversed; mirroring reverses only the cross product.
             let turn = if attributes.back >> slot & 1 == 1 { -1.0 } else { 1.0 };
             let mirror = if draw.mirrored { -1.0 } else { 1.0 };
             let corners = all[*number as usize];
@@ -59,6 +60,7 @@ impl<T: Number> TangentRows<T> {
     fn of_pixels(&mut self, draw: &Draw, attributes: &TriangleAttributes<T>) {
         let mesh = &draw.model.mesh;
         for (slot, number) in attributes.numbers[..attributes.count].iter().enumerate() {
+            // Without texture coordinates there is no gradient to follow.
             let Some([a, b, c]) = uvs(draw, *number) else {
                 self.set(slot, [DVec3::ZERO; 3]);
                 continue;
@@ -67,6 +69,7 @@ impl<T: Number> TangentRows<T> {
             let [p, q, r] = corners.map(|corner| mesh.corner_position(corner));
             let (e1, e2) = (q - p, r - p);
             let turn = if attributes.back >> slot & 1 == 1 { -1.0 } else { 1.0 };
+            // The attributes are reversed on back faces, and turned back here.
             let normal = |corner: usize| {
                 let [x, y, z, _] = attributes.carried[corner][slot];
                 DVec3::new(x.into(), y.into(), z.into()) * turn
@@ -128,6 +131,7 @@ struct Spaces<T> {
 
 impl<T: Number> Spaces<T> {
     fn new(draw: &Draw) -> Self {
+        // T, B and N are added up, so neither transform may change their relative lengths.
         let unscaled = |m: DMat3| {
             let scale = libm::cbrt(m.determinant().abs());
             columns(if scale > 0.0 { m * (1.0 / scale) } else { m })

@@ -52,6 +52,7 @@ impl<T: Number> Hold<'_, T> {
     fn hold<M: Lanes<Number = T>, const PAGES: usize>(self, lanes: M) {
         let Self { fragments, attributes, origin, to } = self;
         let parts = attributes.grid.parts();
+        // Relative to the block, coordinates keep their digits in f32.
         let corners = corners(lanes, attributes, origin.map(|pixel| pixel * parts));
         let [left, top] = origin.map(|pixel| lanes.lift(f64::from(pixel)));
         let (zero, half) = (lanes.lift(0.0), lanes.lift(0.5));
@@ -138,6 +139,7 @@ fn picked<M: Lanes, const PAGES: usize>(
 #[inline(always)]
 fn nearest<R: Real>(d: [R; 2], u: [R; 2], v: [R; 2], [first, second, third]: [R; 3]) -> [R; 2] {
     let (zero, one) = (first.lift(0.0), first.lift(1.0));
+    // The third side runs from the second corner to the third.
     let g = [v[0] - u[0], v[1] - u[1]];
     let from_second = [d[0] - u[0], d[1] - u[1]];
     let on_u = along(d, u);
@@ -151,6 +153,7 @@ fn nearest<R: Real>(d: [R; 2], u: [R; 2], v: [R; 2], [first, second, third]: [R;
     let end = clamped(on_v, [zero, one]);
     let (s, t) =
         (take_v.if_more(zero, zero, clamped(on_u, [zero, one])), take_v.if_more(zero, end, zero));
+    // The third side meets u at its start and v at its end.
     let take_g = beyond_u.if_more(zero, on_g, beyond_v.if_more(zero, one - on_g, one));
     let take_g = (-first).if_more(zero, take_g, zero);
     let end = clamped(on_g, [zero, one]);

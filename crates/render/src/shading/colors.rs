@@ -112,6 +112,7 @@ impl Colors {
     /// Replaces the colours of triangles, one per slot, by the colours of pixels with these slots.
     pub(crate) fn hand_out(&mut self, slots: &[i32]) {
         let hand_out = |row: &mut [u32; BATCH]| {
+            // A copy, because pixels overwrite the row that holds the colours of slots.
             let before: [u32; SLOTS] = std::array::from_fn(|slot| row[slot]);
             for (color, slot) in row.iter_mut().zip(slots) {
                 *color = before[slot.cast_unsigned() as usize % SLOTS];
@@ -138,6 +139,7 @@ pub(crate) fn mean<'a>(
         }
     }
     let [r, g, b] = sums.map(|sum| {
+        // Stored bytes are rounded to nearest by adding half of the divisor.
         let byte =
             if linear { encoded_byte(sum >> log2) } else { (sum + (1 << log2 >> 1)) >> log2 };
         byte.to_le_bytes()[0]
@@ -174,6 +176,7 @@ fn linear_parts() -> &'static LinearParts {
         let parts = |stored: f64| linear(stored / 255.0) * 255.0 * f64::from(1_u32 << BITS);
         LinearParts {
             of_bytes: std::array::from_fn(|byte| parts(byte as f64).round() as u32),
+            // The border between two bytes is halfway between them, before decoding.
             least: std::array::from_fn(|byte| parts(byte as f64 + 0.5).ceil() as u32),
         }
     })
@@ -186,6 +189,7 @@ pub(crate) fn prepare_linear() {
 
 /// Returns the byte that encodes a linear value in fixed point.
 fn encoded_byte(value: u32) -> u32 {
+    // The number of borders at or below the value is its byte: no power is computed.
     let least = &linear_parts().least;
     u32::try_from(least.partition_point(|least| *least <= value)).unwrap_or(255)
 }
@@ -272,6 +276,7 @@ impl Sums {
     /// Returns the means of 2^`log2` samples as pixels, row by row (MSAA resolve).
     #[inline(always)]
     pub(crate) fn means(&self, log2: u32) -> [u32; BLOCK_PIXELS] {
+        // Parts include their rounding threshold, so the shift only truncates.
         let shift = BITS + log2;
         if self.linear {
             return self.sums.map(|[r, g, b, _]| {

@@ -95,6 +95,7 @@ pub(crate) fn one_group<'a, T>(
 pub(crate) fn are_of<T>(group: &Group<'_, T>, numbers: &[u32]) -> bool {
     let Group { context, draw, base, end, pipeline, .. } = *group;
     let is_uniform = draw.uniform.is_some();
+    // A single draw with one pipeline holds all triangles.
     if is_uniform && context.plan.draws.len() == 1 {
         return true;
     }

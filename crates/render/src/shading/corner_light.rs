@@ -85,6 +85,7 @@ impl<'a> LitDraw<'a> {
     fn new(frame: &'a VertexLight<'a>, inputs: &'a Inputs, index: u32) -> Option<Self> {
         let VertexLight { level, plan, lit, terms } = *frame;
         let draw = &plan.draws[index as usize];
+        // Several pipelines or red back faces would need a decision per triangle.
         let pipeline = draw.uniform.filter(|_| draw.back != Back::Red)?;
         let Pipeline::Shaded(shaded) = &plan.pipelines[pipeline as usize] else { return None };
         let stages = shaded.light.as_deref().filter(|_| shows_corner_light(shaded))?;
@@ -123,6 +124,7 @@ impl<'a> Worker<'a> {
             Normals::Face => own.draw.model.mesh.triangles()[number as usize].corners,
             Normals::Vertex => own.points.of(own.order, number, vertices),
         };
+        // Back faces run clockwise on the screen, and front faces do on mirrored objects.
         let turned = clockwise != own.draw.mirrored;
         let table = own.tables[usize::from(turned && own.draw.back == Back::Lit)];
         let mut colors = [[0.0; 4]; 3];

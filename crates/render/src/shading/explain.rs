@@ -49,6 +49,7 @@ pub(crate) fn explain<T: ShadingNumber>(
     if asked.words.len() < 2 {
         return whole;
     }
+    // Only clamped colours are blended, as in the picture.
     clamp(&mut whole);
     // Alpha blending scales the terms of a layer by its opacity, and all terms behind it by the
     // rest.
@@ -108,6 +109,7 @@ fn one<T: ShadingNumber>(
             let place = usize::try_from((y & 7) * 8 + (x & 7)).unwrap_or(0);
             shader.fragments.begin_shared(0);
             shader.fragments.add(number, [x & !7, y & !7], place, 1);
+            // A single fragment is lit at its pixel's centre.
             shader.fragments.shared = false;
             let group = group_of(context, number);
             Point { group, shader: &mut shader, number, at }.explained()
@@ -223,6 +225,7 @@ impl<T: ShadingNumber> Point<'_, T> {
         let ShadingContext { level, plan, lit, terms: of, .. } = *context;
         let kept = shader.tile.light(plan, group.pipeline, shaded).kept.map(<[u32]>::to_vec);
         let by_face = plan.light_at == LightAt::Face;
+        // Flat shading: the light and the normal belong to the centre of the polygon.
         if by_face {
             let Shader { attributes, batch, .. } = &mut **shader;
             batch.len = attributes.count;
@@ -239,6 +242,7 @@ impl<T: ShadingNumber> Point<'_, T> {
         }
         let lights = of.of(group.pipeline);
         let mut terms = Vec::new();
+        // Lights that do not reach the tile were left out, and get no terms.
         let evaluated = |i: &usize| {
             by_face || kept.as_ref().is_none_or(|kept| kept.iter().any(|at| *at as usize == *i))
         };
@@ -285,6 +289,7 @@ impl<T: ShadingNumber> Point<'_, T> {
                 term.value[i] *= mapped[i] / own[i];
             }
         }
+        // The picture's highlights already contain the map.
         if !by_face {
             for (row, value) in shader.batch.specular.iter_mut().zip(mapped) {
                 row[0] = T::from_f64(value);

@@ -47,10 +47,12 @@ impl FaceColors {
     /// Begins a frame of this many triangles: invalidates all colours.
     pub(crate) fn begin(&mut self, triangles: usize) {
         self.known += 2;
+        // The mark has 8 bits; before it repeats, all entries are dropped.
         if self.known > 0xff || self.entries.capacity() <= triangles {
             *self = Self::default();
         }
         self.entries.resize_with(triangles + 1, AtomicU32::default);
+        // The sentinel always counts as known, so it is never claimed.
         *self.entries[triangles].get_mut() = self.known << MARK;
     }
 
@@ -101,6 +103,7 @@ impl FaceColors {
             let color = if word == 0 {
                 background
             } else {
+                // Lines have numbers beyond the table, and count as unknown.
                 let entry = self.entries.get(!(word as u32) as usize);
                 let entry = entry.map_or(0, |entry| entry.load(Ordering::Relaxed));
                 // Checked once at the end: a branch per run would be unpredictable.
@@ -132,6 +135,7 @@ impl<T: ShadingNumber> Shader<T> {
             let count = left.iter().take(SLOTS).take_while(|number| group.holds(**number)).count();
             let (own, others) = left.split_at(count);
             left = others;
+            // Faces with more than one colour are shaded pixel by pixel later.
             if group.path.full != FullPath::Fill {
                 continue;
             }

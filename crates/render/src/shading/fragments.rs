@@ -136,10 +136,12 @@ impl Fragments {
     #[inline(always)]
     fn find<S: Simd>(&mut self, simd: S, runs: &Runs, corner: [i32; 2], most: usize) -> Shown {
         self.begin_block();
+        // Every pixel shows the same triangle as the one before it.
         if runs.triangles == u64::MAX && runs.left | 1 == u64::MAX {
             self.list_full_block(runs.numbers[MARGIN], corner);
             return runs.shown();
         }
+        // A block without triangles uses no slots, so the last list's slots stay.
         if runs.triangles != 0 && !(self.goes_on && self.slots_suffice(runs, most)) {
             self.begin_list();
         }
@@ -176,6 +178,7 @@ impl Fragments {
 
     /// Reverts [`Self::list_more`] to the `len` fragments and `count` slots before it.
     pub(crate) const fn take_back(&mut self, len: usize, count: usize) {
+        // The table still has the dropped slots, so the next list must start afresh.
         (self.len, self.count, self.goes_on) = (len, count, false);
     }
 
@@ -248,7 +251,9 @@ impl Fragments {
     #[inline(always)]
     fn begin_list(&mut self) {
         (self.count, self.goes_on) = (0, false);
+        // A new list number invalidates all entries of the table without clearing it.
         self.list = (self.list + NEXT_LIST) & LISTS;
+        // After 2^24 lists numbers repeat, and old entries would match.
         if self.list == 0 {
             (self.table, self.list) = ([0; TABLE], NEXT_LIST);
         }
@@ -267,6 +272,7 @@ impl Fragments {
         // If the entry belongs to this triangle in this list, only the slot remains after the XOR.
         let known = *entry ^ new;
         let is_known = known < SLOTS as u64;
+        // Without a branch, because new triangles are unpredictable.
         let slot = select_unpredictable(is_known, known, self.count as u64) as usize % SLOTS;
         *entry = new | slot as u64;
         self.numbers[slot] = number;
@@ -324,6 +330,7 @@ impl Fragments {
         let places = (i32x16::from_slice(simd, &UP_TO_SIXTEEN) + first).compress(mask);
         let from = self.len;
         let to = from..from + 16;
+        // All lanes are stored; later pixels overwrite the lanes beyond the selected ones.
         ((places & (BLOCK - 1)) + left).store_slice(&mut self.x[to.clone()]);
         ((places >> 3) + top).store_slice(&mut self.y[to.clone()]);
         for (pixel, place) in self.pixels[to].iter_mut().zip(<[i32; 16]>::from(places)) {

@@ -124,6 +124,7 @@ impl<S: Simd> Narrow<S> {
         let edges = attributes.edges.each_ref().map(|[a, b, c]| [c[0], a[0], b[0]]);
         let across = i32x16::from_slice(simd, &ACROSS);
         let down = i32x16::from_slice(simd, &DOWN);
+        // These offsets are the same for every pair of rows, so each pair adds a single integer.
         let gains =
             [across * edges[0][1] + down * edges[0][2], across * edges[1][1] + down * edges[1][2]];
         Self { edges, gains, per_area: attributes.per_area[0] }
@@ -169,6 +170,7 @@ impl<'a, S: Simd> Wide<'a, S> {
     #[expect(clippy::cast_precision_loss, reason = "they have fewer than 53 bits")]
     pub(crate) fn new(simd: S, triangle: &'a Triangle) -> Self {
         let [[_, er, fr], [_, ed, fd]] = triangle.steps();
+        // The edge functions of two rows, relative to the first pixel of the upper one.
         let columns = f64x8::from_slice(simd, &COLUMNS);
         let (e_columns, f_columns) = (columns * er as f64, columns * fr as f64);
         Self {
@@ -199,6 +201,7 @@ impl<'a, S: Simd> Wide<'a, S> {
         reason = "the nearest number is meant"
     )]
     pub(crate) fn scattered(&self, simd: S, x: &[i32], y: &[i32]) -> [f32x16<S>; 2] {
+        // One pixel at a time in 64-bit integers, because scattered pixels share no steps.
         let mut linear = [[0.0; 16]; 2];
         for (lane, (x, y)) in x.iter().zip(y).enumerate() {
             let [_, e, f] = self.triangle.edges_at(*x, *y);
@@ -216,6 +219,7 @@ impl<S: Simd> Linear<S> for Wide<'_, S> {
         let [_, e, f] = self.triangle.edges_at(x, y);
         let e0 = [self.gains[0][0] + e as f64, self.gains[0][1] + e as f64];
         let f0 = [self.gains[1][0] + f as f64, self.gains[1][1] + f as f64];
+        // All values are integers below 2^53, so stepping down adds no rounding error.
         let (e1, f1) = (self.below(0, e0), self.below(1, f0));
         let (e2, f2) = (self.below(0, e1), self.below(1, f1));
         let (e3, f3) = (self.below(0, e2), self.below(1, f2));
@@ -284,10 +288,12 @@ fn two_rows<S: Simd>(simd: S, of: &HomogeneousWeights, [x, y]: [i32; 2]) -> Weig
 macro_rules! with_points {
     ($level:expr, $attributes:expr, $by:expr, $simd:ident, $points:ident => $what:expr) => {{
         let attributes: &TriangleAttributes<f32> = $attributes;
+        // Clipped: corners have no screen position, so weights come from clip space.
         if let Some($points) = $by.cut {
             dispatch!($level, $simd => $what);
             true
         } else if attributes.wide & 1 == 0 {
+            // Narrow: edge functions in 32-bit integers.
             dispatch!($level, $simd => {
                 let by_w = of_first(Sixteen($simd), &attributes.by_w);
                 let linear = Narrow::new($simd, attributes);
@@ -296,6 +302,7 @@ macro_rules! with_points {
             });
             true
         } else if let Some(triangle) = &Triangle::on(attributes.grid, attributes.corners(0)) {
+            // Wide: edge functions in 64-bit integers and f64.
             dispatch!($level, $simd => {
                 let by_w = of_first(Sixteen($simd), &attributes.by_w);
                 let linear = Wide::new($simd, triangle);
@@ -391,6 +398,7 @@ fn lit<S: Simd>(
     let down = i32x16::from_slice(simd, &DOWN);
     let [left, top] = blocks.corner;
     batch.len = BLOCK_PIXELS;
+    // Light that reads no positions is equal in all blocks, and is computed for the first only.
     let mut is_lit = false;
     let TexelScratch { places, texels, colors } = scratch;
     blocks.each(
@@ -413,6 +421,7 @@ fn lit<S: Simd>(
                     }
                     if let Some(texture) = &texture {
                         let way = texture.way(simd, &OfFirst, weights);
+                        // A triangle with too many texels for f32 is placed in f64.
                         let position = match texture.far.first() {
                             Some(far) => far.of_two_rows(simd, [x, y]),
                             None => texture.position(simd, &OfFirst, way),
@@ -454,6 +463,7 @@ fn lit<S: Simd>(
                 if glow.is_some() || encoding.is_some() {
                     color = finished(lanes, color, glow, encoding);
                 }
+                // The dithering pattern has the size of a block, so thresholds repeat.
                 let threshold = lanes.load(by.thresholds, 16 * pair);
                 lanes.store_pixels_by(color, threshold, &mut pixels, 0);
                 canvas.put(at, &pixels);

@@ -92,10 +92,12 @@ impl<T: ShadingNumber> Barycentrics<T> {
         (plan, draw): (&FramePlan, &Draw),
     ) {
         let Settings { coverage, interpolation, .. } = *plan.variants;
+        // The quick path needs pixel centres inside of their triangles.
         let outside = fragments.shared || coverage != Coverage::Exact;
         if outside || !T::find(interpolation, level, fragments, attributes, self) {
             self.find_step_by_step(level, fragments, attributes, (plan, draw));
         }
+        // Spans then replace the weights, which have perspective at every pixel.
         if interpolation == Interpolation::EverySixteen {
             interpolate_spans(fragments, attributes, self);
         }
@@ -147,6 +149,7 @@ impl<T: ShadingNumber> Barycentrics<T> {
                 self.weights[0][i] = T::from_f64(second);
                 self.weights[1][i] = T::from_f64(third);
                 self.w[i] = T::from_f64(w);
+                // These weights are clamped to the triangle, and light is evaluated at their point.
                 if fragments.shared {
                     let weights = DVec3::new(1.0 - second - third, second, third);
                     let place = cut_place(plan, draw, number, weights);
@@ -203,6 +206,7 @@ impl ShadingNumber for f32 {
             });
             return true;
         }
+        // Clipped triangles have no edge functions.
         if attributes.cut != 0 {
             return false;
         }
@@ -232,6 +236,7 @@ impl ShadingNumber for f32 {
         to: &mut Barycentrics<Self>,
     ) {
         paged!(attributes.count, PAGES => {
+            // Only the linear coordinates are used: weights are computed again after clamping.
             let perspective = Interpolation::Perspective;
             dispatch!(level, simd => {
                 find_narrow::<_, PAGES>(perspective, simd, fragments, attributes, to);
@@ -247,6 +252,7 @@ impl ShadingNumber for f32 {
     ) -> u64 {
         let mut done = 0;
         dispatch!(level, simd => for at in (0..attributes.count).step_by(16) {
+            // Triangles with meaningless steps are placed one by one.
             let steps = reads_mips.then(|| lane_steps(simd, attributes, at));
             let (steps, odd) = steps.map_or((None, 0), |(steps, odd)| (Some(steps), odd));
             done |= (to.set_sixteen(simd, (uvs, at), texture, steps) & !odd) << at;
@@ -268,6 +274,7 @@ impl ShadingNumber for f32 {
                 (Texels::Colors, Decoding::Linear) => {
                     samples.multiply::<_, Linear, PAGES>(simd, scratch, to);
                 }
+                // Heights are numbers and are never decoded.
                 (Texels::Slopes, _) => samples.slopes::<_, PAGES>(simd, scratch, to),
             });
         });
@@ -328,6 +335,7 @@ fn find_among<S: Simd, const PAGES: usize>(
         }
         let x = in_f64(i32x16::from_slice(simd, &fragments.x[at..at + 16]) - left);
         let y = in_f64(i32x16::from_slice(simd, &fragments.y[at..at + 16]) - top);
+        // Lanes of other triangles keep their coordinates.
         let second = own.select(plane(second, x, y), lanes.load(&to.linear[0], at));
         let third = own.select(plane(third, x, y), lanes.load(&to.linear[1], at));
         lanes.store(second, &mut to.linear[0], at);

@@ -46,7 +46,9 @@ impl Layered {
     ) {
         let ShadingContext { level, plan, frame, .. } = *context;
         let samples = frame.sample_positions().count();
+        // The last sample of another block must not match the first one here.
         self.before.clear();
+        // The layers of a pixel are different points, so shadows are not cached per pixel.
         shader.rays.paints_layers = true;
         for sample in 0..samples {
             let opaque = visibility.entries(level, block, sample);
@@ -57,6 +59,7 @@ impl Layered {
             let Self { layers, blend, sequence, before } = self;
             // A sample with the same sequence as the one before has the same colours.
             if sequence.is_empty() || sequence != before {
+                // First the opaque surface, then the layers over it from far to near.
                 let mut behind = Sums::new(plan.variants.are_linear());
                 shader.add_entries(context, &opaque, corner, &mut behind);
                 blend.begin(|place| behind.parts(place), plan.transparency);
@@ -66,6 +69,7 @@ impl Layered {
                         blend.place(level, || distances(level, plan, &row));
                         shader.color_triangles(context, &row, corner, &mut Out::Layer(blend));
                     }
+                    // A pixel with more layers than a list holds is gathered again.
                     more = layers.take(level, order, at, &opaque);
                 }
             }
@@ -81,6 +85,7 @@ impl Layered {
         sequence.clear();
         // The weights of a mean differ between samples.
         if samples > 1 && layers.are_all() && plan.transparency != Transparency::Weighted {
+            // Depths may differ between samples; only primitives and their order matter.
             let number = |word: &u64| word & u64::from(u32::MAX);
             sequence.extend(opaque.iter().map(number));
             for i in 0..layers.len() {
@@ -100,6 +105,7 @@ fn distances(level: Level, plan: &FramePlan, words: &[u64; BLOCK_PIXELS]) -> [f6
     }
     // The entries zz and zw of the projection.
     let (zz, zw) = (plan.clip_from_view.z_axis.z, plan.clip_from_view.w_axis.z);
+    // Inverts the projection, which maps z to zw / w - zz, or to zz z + zw if parallel.
     let all = depths.iter_mut();
     match plan.eye {
         Eye::Point => dispatch!(level, _ => all.for_each(|depth| *depth = zw / (*depth + zz))),
@@ -118,6 +124,7 @@ impl<T: ShadingNumber> Shader<T> {
         sums: &mut Sums,
     ) {
         self.color_triangles(context, entries, corner, &mut Out::Sums(sums));
+        // Lines and background are not lit, and are added with their final colours.
         for (place, word) in entries.iter().enumerate() {
             match seen(*word) {
                 Visible::Triangle(_) => {}

@@ -63,10 +63,12 @@ impl<T: ShadingNumber> Lit<T> {
         self.to_view.clear();
         self.to_view.extend(plan.draws.iter().map(|draw| ToView::new(plan, draw)));
         self.used = 0;
+        // Faces and pixels are lit when they are drawn, and need no tables.
         if plan.light_at != LightAt::Vertex {
             return;
         }
         for (i, draw) in (0_u32..).zip(&plan.draws) {
+            // A sorted set without duplicates, because `tables` searches by draw and pipeline.
             let own: BTreeSet<u32> = draw.part_pipelines.iter().flatten().copied().collect();
             for pipeline in own {
                 let Pipeline::Shaded(shaded) = &plan.pipelines[pipeline as usize] else { continue };
@@ -78,6 +80,7 @@ impl<T: ShadingNumber> Lit<T> {
                     if back && draw.back != Back::Lit {
                         continue;
                     }
+                    // Tables of the last frame are reused with their memory.
                     if self.used == self.tables.len() {
                         self.tables.push(Table::default());
                     }
@@ -153,6 +156,7 @@ impl<T: ShadingNumber> Table<T> {
     /// Clears the table for a draw.
     fn clear(&mut self, draw: &Draw, shaded: &Shaded) {
         let count = place_count(draw).div_ceil(CHUNK);
+        // Unless texels or vertex colours multiply the light, vertices hold final colours.
         let colored =
             shaded.texture.is_none() && !shaded.vertex_colors && !shaded.extras.reads_texels();
         self.tint = colored.then(|| shaded.tint.map(T::from_f64));
@@ -202,6 +206,7 @@ impl<T: ShadingNumber> Table<T> {
         let to_view = self.to_view.expect("it was made ready");
         self.diffuse[chunk].get_or_init(|| {
             put_places(draw, chunk * CHUNK, batch);
+            // Shadow rays need positions in object space, which the transform overwrites.
             let (positions, count) = (tracer.map(|_| batch.position), batch.len);
             T::run(level, Place { batch, to_view });
             let mut place = |origins: &mut Origins| {
@@ -356,6 +361,7 @@ impl<T: Number> ToView<T> {
 fn near_observer(draw: &Draw) -> DVec3 {
     let Some(bounds) = draw.model.mesh.bounds() else { return DVec3::ZERO };
     let observer = draw.view_from_object.inverse().w_axis.truncate();
+    // A transform without an inverse has no observer, and the centre must do.
     let near = if observer.is_finite() { bounds.nearest_to(observer) } else { bounds.centre() };
     dvec3(near.as_vec3().to_array())
 }
@@ -372,6 +378,7 @@ impl<T: Number> Kernel<T> for Place<'_, T> {
         let Self { batch, to_view } = self;
         let (middle, origin) = (set(lanes, to_view.middle), set(lanes, to_view.middle_in_view));
         for at in (0..batch.len).step_by(M::LANES) {
+            // Exact for positions near the middle, so f32 keeps the digits of large coordinates.
             let near = load(lanes, &batch.position, at).minus(middle);
             // Positions far beyond the view are clamped, to keep the square of their distance to a
             // light finite.
@@ -412,6 +419,7 @@ fn run_some<'a, T: ShadingNumber>(
 ) {
     match shadows {
         None => set_lights(lights, level, batch),
+        // With shadows, lights are added one by one: each is blocked at other positions.
         Some(mut shadows) => {
             batch.darken();
             lights.for_each(|(stage, term)| shadows.add_light(stage, term, level, batch));
@@ -432,6 +440,7 @@ impl TileLight<'_> {
         let Some(kept) = self.kept else {
             return run(self.stages, terms, level, batch, shadows);
         };
+        // Some lights do not reach this tile.
         let of = |place: &u32| (&self.stages[*place as usize], &terms[*place as usize]);
         run_some(kept.iter().map(of), level, batch, shadows);
     }
@@ -443,6 +452,7 @@ fn set_lights<'a, T: ShadingNumber>(
     level: Level,
     batch: &mut Batch<T>,
 ) {
+    // One pass over the batch adds all lights, unless a map changes their exponents.
     if lights.clone().all(|(stage, _)| !stage.is_mapped) {
         let lights = lights.map(
             #[inline(always)]

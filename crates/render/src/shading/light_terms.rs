@@ -40,6 +40,7 @@ impl<T: Number> LightTerms<T> {
     /// Prepares the light terms and mipmaps of a plan.
     pub(crate) fn prepare(&mut self, plan: &FramePlan) {
         self.encoding = plan.variants.are_linear().then(Encoding::new);
+        // Tables are computed before drawing, so no thread waits for them.
         if self.encoding.is_some() {
             prepare_decoding();
             prepare_linear();
@@ -54,6 +55,7 @@ impl<T: Number> LightTerms<T> {
             terms.clear();
             if let Pipeline::Shaded(Shaded { light: Some(stages), material, .. }) = pipeline {
                 let PhongMaterial { exponent, floor, .. } = *material;
+                // The exponent depends on the material only, so its lights share the power.
                 let highlight = Power::by(plan.variants.power, exponent, floor);
                 let lights = stages.iter().map(|stage| &plan.lights[stage.light as usize]);
                 let term = |light| LightTerm::new(light, material, highlight);
@@ -69,6 +71,7 @@ impl<T: Number> LightTerms<T> {
             let Pipeline::Shaded(shaded) = pipeline else { continue };
             for (texture, decoding) in mipped(plan, shaded) {
                 if self.mips_of(texture, decoding).is_none() {
+                    // Mipmaps of the last picture are moved over; unused ones are dropped.
                     let known = before.iter().position(|mips| mips.are_of(texture, decoding));
                     self.mips.push(match known {
                         Some(at) => before.swap_remove(at),
@@ -112,6 +115,7 @@ fn mipped<'a>(
     let extras = &shaded.extras;
     let decoding = plan.variants.decoding();
     let colors = shaded.texture.iter().chain(extras.colors()).map(move |it| (it, decoding));
+    // Maps of numbers are averaged as stored, even if colours are linear.
     let numbers = extras.exponent.iter().map(|it| (it, Decoding::Stored));
     let bumps = extras.bump.iter().map(|bump| (&bump.map, Decoding::Stored));
     let filtered = plan.filter.reads_mips();

@@ -39,6 +39,7 @@ pub(crate) fn place_fragments<T: ShadingNumber>(
         if slot != last {
             last = slot;
             let corners = tracer.corners_of(caster, number);
+            // Points may be rounded off their planes by a multiple of the largest coordinate.
             let reach = corners.iter().fold(0.0, |most: f64, c| most.max(c.abs().max_element()));
             origins.reach = origins.reach.max(reach);
             let normals = smooth.then(|| {
@@ -54,6 +55,7 @@ pub(crate) fn place_fragments<T: ShadingNumber>(
         let is_inside = at_centre.min_element() >= 0.0;
         let weights =
             if is_inside || !fragments.shared { at_centre } else { barycentrics.weights(i) };
+        // The point is moved off the edges, and its own triangle never shades it.
         let [y, z] = shares(weights);
         let at = within(corners, [y, z]);
         origins.set(i, at, [number, number + 1]);
@@ -98,6 +100,7 @@ const INSIDE: f64 = 1e-6;
 fn shares(weights: DVec3) -> [f64; 2] {
     let [x, y, z] = each(weights.to_array(), |weight| weight.max(INSIDE));
     let sum = x + y + z;
+    // Infinite weights give no point, so the centroid is lit.
     if sum.is_finite() { [y / sum, z / sum] } else { [1.0 / 3.0; 2] }
 }
 

@@ -103,6 +103,7 @@ impl<T: ShadingNumber> Points<'_, T> {
         let Self { attributes, .. } = self;
         let mut done = 0;
         if let Some(sampler) = source.sampler() {
+            // The placement is kept while the triangles stay the same.
             if attributes.are_new {
                 place(group, attributes, (source.texture, &sampler), placed);
             }
@@ -131,6 +132,7 @@ impl<T: ShadingNumber> Points<'_, T> {
         let (mut corners, mut all_steps) = ([None; SLOTS], [None; SLOTS]);
         for (slot, number) in attributes.numbers[..attributes.count].iter().enumerate() {
             corners[slot] = uvs(group.draw, *number);
+            // Only mipmaps need the footprint of a pixel.
             if source.mips.is_some() && done >> slot & 1 == 0 {
                 all_steps[slot] = steps((plan, group.draw), attributes, slot);
             }
@@ -162,6 +164,7 @@ impl<T: ShadingNumber> Points<'_, T> {
                     }
                 }
                 Texels::Slopes => {
+                    // Central differences, as in lanes.
                     let height = |beside: [f64; 2]| {
                         let [r, g, b, _] = texel(beside);
                         brightness(Vec3([r, g, b]))
@@ -213,6 +216,7 @@ pub(super) fn place<T: ShadingNumber>(
     dispatch!(level, _ => for slot in Bits(others) {
         let uvs = each([0, 1, 2], |corner| rows[corner].map(|row| f64::from(row[slot])));
         let texels = texels(uvs, texture);
+        // A triangle with too many texels for f32 gets its positions in f64, pixel by pixel.
         if !fits_f32(&texels) {
             let Some(own) = FarTexture::new(slot, uvs, texture, || {
                 let number = attributes.numbers[slot];

@@ -35,6 +35,7 @@ pub(crate) fn bounds_of(tile: usize, size: Size) -> PixelBox {
     let (left, top) = (tile % columns * TILE, tile / columns * TILE);
     let [right, bottom] = [size.width, size.height]
         .map(|pixels| i32::try_from(pixels).expect("pictures have 32-bit sizes"));
+    // Tiles at the right and lower border end with the picture.
     let picture = PixelBox { left: 0, top: 0, right, bottom };
     PixelBox { left, top, right: left + TILE, bottom: top + TILE }.intersection(picture)
 }
@@ -149,6 +150,7 @@ impl<T: ShadingNumber> Painter<T> {
         let ShadingContext { plan, .. } = *context;
         let (size, background) = (plan.size, plan.background);
         let bounds = bounds_of(tile, size);
+        // An empty tile costs a fill at most, and no store if it holds the background already.
         if !self.see(context, tile, bounds) {
             return Self::fill(tile, size, background, &mut locked(band));
         }
@@ -176,6 +178,7 @@ impl<T: ShadingNumber> Painter<T> {
         let blocks = self.blocks(context, bounds, &mut canvas, (before, false));
         self.pixels = pixels;
         let mut band = locked(band);
+        // Blocks that showed only background before and still do are not copied.
         self.copy(tile, size, !(before & blocks), &mut band);
         band.filled[column] = Filled { color: background, blocks };
     }
@@ -190,6 +193,7 @@ impl<T: ShadingNumber> Painter<T> {
         // Colours of hits are converted while they are drawn.
         let conversion = Some(context.terms.conversion(plan));
         visibility.draw(level, plan, frame, (tile, bounds), conversion);
+        // Transparent triangles are kept apart: they hide nothing, and are sorted per pixel later.
         if frame.is_layered(tile) {
             layers.begin(level, plan, frame, (tile, bounds));
         } else {
@@ -198,6 +202,7 @@ impl<T: ShadingNumber> Painter<T> {
         if visibility.is_empty() && layers.touched() == 0 {
             return false;
         }
+        // Lights that do not reach the depths of the tile, layers included, are left out.
         shader.tile.begin(plan, bounds, || layers.depths_with(visibility.depths(level)));
         true
     }
@@ -215,7 +220,9 @@ impl<T: ShadingNumber> Painter<T> {
         let layered = self.layered.layers.touched();
         let whole = self.visibility.full_blocks();
         let background = u32::from_le_bytes(context.plan.background.opaque());
+        // A row longer than a block, because runs of equal pixels are filled a row at a time.
         let mut colors = [0; BLOCK_PIXELS + ROW];
+        // Faces without a known colour are lit first, for the whole tile in few batches.
         if let Some(faces) = context.faces {
             self.shader.light_shown_faces(context, faces, &self.visibility);
         }
@@ -230,6 +237,7 @@ impl<T: ShadingNumber> Painter<T> {
             // From the most special case to the most common one: layers, full blocks, colours from
             // drawing, then blocks to be shaded.
             if layered >> block & 1 != 0 {
+                // Layers reuse the fragment list, so waiting blocks are coloured before.
                 self.shader.finish_waiting(context, canvas);
                 let mut sums = Sums::new(context.plan.variants.are_linear());
                 let corner = self.visibility.corner(block);
@@ -237,10 +245,12 @@ impl<T: ShadingNumber> Painter<T> {
                 layered.add(context, (shader, visibility), (block, corner), &mut sums);
                 canvas.put(at, &sums.means(context.frame.sample_positions().count().ilog2()));
             } else if whole >> block & 1 != 0 {
+                // Already coloured by `fully_covered`.
                 continue;
             } else if let Some((colors, are_known)) = self.visibility.colors(block) {
                 canvas.put(at, colors);
                 self.shader.path_pixels.early += BLOCK_PIXELS as u64;
+                // Some pixels show a primitive without a colour from drawing.
                 if !are_known {
                     let (others, corner) =
                         (self.visibility.uncolored(block), self.visibility.corner(block));
@@ -254,6 +264,7 @@ impl<T: ShadingNumber> Painter<T> {
                     let visibility = self.visibility.block(block);
                     let runs = (visibility, self.shader.runs[block]);
                     let faces = context.faces;
+                    // If the colours of all faces in the block are known, a look-up is enough.
                     if faces.is_some_and(|all| all.of_block(runs, background, &mut colors)) {
                         canvas.put(at, &colors[..BLOCK_PIXELS]);
                         self.shader.path_pixels.faces += BLOCK_PIXELS as u64;
@@ -263,6 +274,7 @@ impl<T: ShadingNumber> Painter<T> {
                     }
                 };
             } else {
+                // A block filled by an earlier frame needs no store: the picture keeps it.
                 if !is_filled {
                     canvas.fill(at, context.plan.background.opaque());
                 }
@@ -270,6 +282,7 @@ impl<T: ShadingNumber> Painter<T> {
             }
             background_blocks |= u64::from(!shows) << block;
         }
+        // No block waits for the next tile, which has another canvas.
         self.shader.finish_waiting(context, canvas);
         background_blocks
     }
@@ -287,6 +300,7 @@ impl<T: ShadingNumber> Painter<T> {
         while left != 0 {
             let first = left.trailing_zeros() as usize;
             let Some(number) = self.visibility.whole(first) else { return };
+            // All blocks of this triangle are coloured together, so it is prepared once.
             let own = |block| u64::from(self.visibility.whole(block) == Some(number)) << block;
             let which = Bits(left).fold(0, |which, block| which | own(block));
             left &= !which;
@@ -305,9 +319,11 @@ impl<T: ShadingNumber> Painter<T> {
     ) -> bool {
         let Self { shader, visibility, samples, .. } = self;
         let planes = visibility.planes(block);
+        // If the samples of each pixel agree, the block costs no more than with one sample.
         if samples.compare(context.level, planes) {
             return shader.block_later(context, &planes[0], corner, (canvas, at), fill);
         }
+        // Separate samples need the fragment list, so waiting blocks are coloured before.
         shader.finish_waiting(context, canvas);
         let mut sums = Sums::new(context.plan.variants.are_linear());
         let shows = shader.add_samples(context, (samples, planes), corner, (&mut sums, None));
@@ -322,6 +338,7 @@ impl<T: ShadingNumber> Painter<T> {
         bounds: PixelBox,
         to: &mut [BlockPasses],
     ) {
+        // A pass of one sample is painted like a picture; then its bytes are summed.
         let mut pixels = std::mem::take(&mut self.pixels);
         let mut canvas = Canvas { pixels: &mut pixels[..], stride: TILE_SIDE };
         self.blocks(context, bounds, &mut canvas, (0, false));
@@ -340,6 +357,7 @@ impl<T: ShadingNumber> Painter<T> {
         let bounds = bounds_of(tile, plan.size);
         let many = frame.sample_positions().are_many();
         if !self.see(context, tile, bounds) {
+            // A pass without primitives adds background to every pixel, and needs no sums.
             to.background += if many { ALL } else { 1 };
         } else if many {
             let blocks = to.blocks(plan).iter_mut().enumerate();
@@ -395,12 +413,14 @@ impl<T: ShadingNumber> Painter<T> {
         }
         let mut canvas = Canvas { pixels: &mut self.pixels, stride: TILE_SIDE };
         for (block, BlockPasses { sums, background: own, .. }) in blocks.iter_mut().enumerate() {
+            // Passes that showed only background are added here, together.
             sums.add_everywhere(background.opaque(), *everywhere + *own);
             let at = canvas.offset(corner_in_tile(block));
             canvas.put(at, &sums.means(samples.count().ilog2()));
         }
         let mut band = locked(band);
         self.copy(tile, size, u64::MAX, &mut band);
+        // Blocks of background are not tracked over several passes.
         band.filled[tile % size.width.div_ceil(TILE_SIDE)] = Filled::default();
     }
 

@@ -64,6 +64,7 @@ impl<T: Number, const FINISHES: bool> Kernel<T> for Quantize<'_, T, FINISHES> {
             if FINISHES && let Some(glow) = glow {
                 color = color.plus(load(lanes, glow, at));
             }
+            // Bytes are encoded now; fixed-point sums stay linear until they are averaged.
             if FINISHES
                 && let Some(encoding) = encoding
                 && colors.form == Form::Pixels
@@ -149,6 +150,7 @@ impl<T: Number> Thresholds<T> {
 /// Returns the thresholds of a block's pixels, which are the same for every block.
 pub(crate) fn block_thresholds(rounding: Rounding) -> [f32; BLOCK_PIXELS] {
     let mut fragments = Fragments::default();
+    // The pattern has the size of a block, so the first block serves for all.
     fragments.list_full_block(0, [0; 2]);
     let mut thresholds = Thresholds::default();
     let all = thresholds.of(rounding, &fragments);

@@ -54,6 +54,7 @@ impl Samples {
             }
             let known = *left & kept.known(level, &self.numbers[sample]);
             if known != 0 {
+                // Pixels without a cached colour get a share of 0 instead of a branch.
                 let bit = |place: usize| i32::from(known >> place & 1 == 1);
                 let shares = &self.shares[sample];
                 let shares = std::array::from_fn(|place| shares[place] * bit(place));
@@ -67,6 +68,7 @@ impl Samples {
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "the lower half of a word is the number")]
     fn compare_in<S: Simd>(&mut self, simd: S, planes: &Planes) {
+        // The lower half of an entry is the inverted number of its primitive.
         for (numbers, visibility) in self.numbers.iter_mut().zip(planes) {
             for (number, word) in numbers.iter_mut().zip(visibility) {
                 *number = !(*word as u32);
@@ -94,6 +96,7 @@ impl Samples {
             for (row, shares) in self.shares.iter_mut().zip(shares) {
                 shares.store_slice(&mut row[at..at + 16]);
             }
+            // A primitive is new in a sample if no earlier sample shows it.
             self.new[1] |= (!ab).to_bitmask() << at;
             self.new[2] |= (!(ac | bc)).to_bitmask() << at;
             self.new[3] |= (!(ad | bd | cd)).to_bitmask() << at;
@@ -137,6 +140,7 @@ impl Kept {
             for at in (0..BLOCK_PIXELS).step_by(16) {
                 let own = u32x16::from_slice(simd, &self.numbers[at..at + 16]);
                 let asked = u32x16::from_slice(simd, &numbers[at..at + 16]);
+                // Empty entries hold the background's number, which must not match.
                 let is_nothing = own.simd_eq(NOTHING);
                 known |= (own.simd_eq(asked) & !is_nothing).to_bitmask() << at;
             }
@@ -179,6 +183,7 @@ impl<T: ShadingNumber> Shader<T> {
         if unlit == [0; FOUR] {
             return false;
         }
+        // Pixels lit in earlier passes become empty entries.
         let entry = |place: usize| planes[0][place] & (unlit[0] >> place & 1).wrapping_neg();
         let masked = kept.is_some().then(|| std::array::from_fn(entry));
         let entries = masked.as_ref().unwrap_or(&planes[0]);
@@ -204,6 +209,7 @@ impl<T: ShadingNumber> Shader<T> {
         // Shadows are traced for at most as many points at once as a mask has bits.
         let are_cast = context.plan.shadows.are_cast();
         let most = if are_cast { BLOCK_PIXELS } else { BATCH };
+        // First samples may fill such a mask, so they are coloured separately.
         if are_cast {
             color(self, sums);
         }
@@ -251,6 +257,7 @@ impl<T: ShadingNumber> Shader<T> {
         if self.fragments.len > 0 {
             if let Some(group) = one_group(context, &self.fragments) {
                 self.color_group(&group, out);
+                // Only a list of one group leaves slots that the next list can reuse.
                 most = self.most_slots(context);
             } else {
                 self.color_groups(context, out);

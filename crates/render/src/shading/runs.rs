@@ -8,6 +8,7 @@ use crate::screen::tiles::{BLOCK, BLOCK_PIXELS};
 /// The padding before the first pixel, which gives every pixel a left neighbour.
 pub(super) const MARGIN: usize = 16;
 const ROW: usize = BLOCK as usize;
+// A bit for the first pixel of each row.
 const FIRST_COLUMN: u64 = 0x0101_0101_0101_0101;
 
 /// Masks of the pixels that show triangles or lines: bit i is pixel i.
@@ -43,9 +44,11 @@ impl Runs {
         let mut numbers = [u32::MAX; MARGIN + BLOCK_PIXELS];
         let (mut triangles, mut background, mut left, mut above) = (0, 0, 0, 0);
         for at in (0..BLOCK_PIXELS).step_by(16) {
+            // The lower half of an entry is the inverted number of its primitive.
             let words = |at| u64x8::from_slice(simd, &visibility[at..at + 8]);
             let own = !words(at).narrow(words(at + 8));
             own.store_slice(&mut numbers[MARGIN + at..][..16]);
+            // Numbers from 2^31 on are lines, and the last one is the background.
             triangles |= own.simd_lt(1 << 31).to_bitmask() << at;
             background |= own.simd_eq(u32::MAX).to_bitmask() << at;
             // The last lane of the sixteen before, and all but the last lane of these.

@@ -66,6 +66,7 @@ impl<'a> BatchShadows<'a> {
     /// are traced.
     fn traced(&mut self, level: Level, (number, light): (u32, DVec3), mask: u64) -> u64 {
         let known = self.pixels.zip(self.tracer.known(number));
+        // The cache has a bit per pixel of the block; the batch may hold only some pixels.
         let before = known.map_or(KnownPixels::default(), |(pixels, known)| {
             let KnownPixels { traced, shaded } = known.at(pixels.first);
             KnownPixels { traced: pixels.in_batch(traced), shaded: pixels.in_batch(shaded) }
@@ -92,11 +93,13 @@ impl<'a> BatchShadows<'a> {
         level: Level,
         batch: &mut Batch<T>,
     ) {
+        // Lights without shadows are only added.
         let Some(light) = self.tracer.light(stage.light) else {
             return T::add_light(stage.variant(), level, batch, term);
         };
         let before = (first(&batch.diffuse), first(&batch.specular));
         T::add_light(stage.variant(), level, batch, term);
+        // Positions that the light did not change need no ray.
         let lit = lit(level, batch, &before);
         if lit == 0 {
             return;
@@ -156,6 +159,7 @@ fn lit<T: Number>(level: Level, batch: &Batch<T>, before: &(Firsts<T>, Firsts<T>
         }
     }
     let lit = dispatch!(level, simd => bit_of_each(simd, &changed));
+    // Lanes beyond the batch may have changed, too.
     lit & u64::MAX >> (POINTS - batch.len)
 }
 
@@ -183,6 +187,7 @@ pub(crate) fn place_vertices<T: Number>(
     let [x, y, z] = positions;
     for (i, ((x, y), z)) in x.iter().zip(y).zip(z).take(count).enumerate() {
         let [x, y, z]: [f64; 3] = [*x, *y, *z].map(Into::into);
+        // Computed like the casters' corners, so both are equal; adding 0 removes negative zeros.
         let at = world_from_object.transform_point3(DVec3::new(x + 0.0, y + 0.0, z + 0.0));
         origins.set(i, at, [0; 2]);
     }

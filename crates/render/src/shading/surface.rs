@@ -179,6 +179,7 @@ impl<T: ShadingNumber> Shader<T> {
                 let Fragments { len, pixels, shares, slots, numbers, .. } = &self.fragments;
                 let pixels = &pixels[..*len];
                 sums.add_all(&self.colors, pixels, &shares[..*len]);
+                // Each pixel caches one colour: the triangle of its first sample.
                 kept.keep(&self.colors, &pixels[..*len.min(first)], slots, numbers);
             }
             Out::Layer(blend) => {
@@ -201,6 +202,7 @@ impl<T: ShadingNumber> Shader<T> {
     /// Colours a block that shows several draws or pipelines, group by group.
     pub(super) fn color_groups(&mut self, context: &ShadingContext<'_, T>, out: &mut Out<'_, '_>) {
         let mut done = [false; SLOTS];
+        // Each group gets a list with its part of the fragments.
         let all = std::mem::take(&mut self.fragments);
         for slot in 0..all.count {
             if done[slot] {
@@ -251,12 +253,14 @@ impl<T: ShadingNumber> Shader<T> {
         let each = textured || plan.variants.rounding == Rounding::Dithered;
         let light = shaded.light.as_deref().map(|stages| (plan.light_at, stages));
         let located = textured || matches!(light, Some((LightAt::Pixel | LightAt::Vertex, _)));
+        // Indices of texture coordinates are prefetched while corners are prepared.
         if shaded.texture.is_some() && asks_ahead(self.fragments.count) {
             let mesh = &draw.model.mesh;
             let numbers = &self.fragments.numbers[..self.fragments.count];
             numbers.iter().for_each(|number| mesh.prefetch_uv_places(number - group.base));
         }
         self.take(group, located);
+        // Textures are placed for all slots of a list, so keeping slots would save little.
         self.prepares_little = !textured && extras.is_empty();
         if located {
             self.barycentrics.find(level, &self.fragments, &self.attributes, (plan, draw));
@@ -264,6 +268,7 @@ impl<T: ShadingNumber> Shader<T> {
         // If each triangle has one colour, colours are computed per slot and handed out at the end.
         let is_by_slot = !(located || each);
         self.batch.len = if is_by_slot { self.fragments.count } else { self.fragments.len };
+        // Light comes first. With light at vertices it may contain the tint already.
         let mut tint = shaded.tint;
         match light {
             None => {}
@@ -306,9 +311,11 @@ impl<T: ShadingNumber> Shader<T> {
             None => SurfaceColor::Texels(texels),
             Some(tint) => SurfaceColor::Tint(tint.map(T::from_f64)),
         };
+        // Rounding to nearest is the kernel's default and needs no thresholds.
         let thresholds =
             (rounding != Rounding::Nearest).then(|| thresholds.of(rounding, fragments));
         let glow = glows.then_some(&maps.glow);
+        // Most surfaces neither glow nor need encoding, and take the smaller kernel.
         if glows || encoding.is_some() {
             let kernel =
                 Quantize::<T, true> { batch, lit, own, glow, thresholds, encoding, colors };
@@ -325,6 +332,7 @@ impl<T: ShadingNumber> Shader<T> {
     pub(crate) fn take(&mut self, group: &Group<'_, T>, located: bool) -> bool {
         let Group { context, draw, draw_index, base, .. } = *group;
         let ShadingContext { level, plan, frame, .. } = *context;
+        // Without culling, corners tell back faces from front faces even in flat shading.
         let corners = located || draw.back != Back::Culled;
         let order = corners.then(|| draw.model.mesh.draw_order());
         let new = self.attributes.take(&self.fragments, order, draw_index, base);
@@ -371,6 +379,7 @@ impl<T: ShadingNumber> Shader<T> {
             }
             let points = Points { fragments, attributes, barycentrics };
             surface_samples(level, look, points, batch);
+            // Bump maps tilt the interpolated normals before any light reads them.
             if let Some(bump) = &shaded.extras.bump {
                 bend(group, points, bump, (maps, batch));
             }
@@ -401,6 +410,7 @@ impl<T: ShadingNumber> Shader<T> {
     ) -> Option<[f64; 3]> {
         let ShadingContext { level, plan, lit, .. } = *group.context;
         let tables = lit.tables(group.draw_index, group.pipeline);
+        // Tables of final colours need one interpolation, tables of light need two.
         let colored = tables[0].is_colored();
         if !colored {
             // The attributes of the last block hold specular light.
@@ -424,9 +434,11 @@ impl<T: ShadingNumber> Shader<T> {
         interpolate(attributes, Mixed::Rows(&mut batch.diffuse));
         batch.len = fragments.len;
         if colored {
+            // Final colours include the highlights.
             batch.specular = [[T::default(); BATCH]; 3];
             return Some([1.0; 3]);
         }
+        // Diffuse light is done; now the same attributes carry specular light.
         attributes.carry_light(
             group.draw,
             #[inline(always)]
@@ -464,6 +476,7 @@ impl<T: ShadingNumber> Shader<T> {
         let context = group.context;
         let ShadingContext { level, lit, terms, .. } = *context;
         let Self { fragments, attributes, batch, rays, .. } = self;
+        // One position per face: the centre of its polygon.
         batch.len = attributes.count;
         lit.place_faces(level, (group.draw_index, group.draw), attributes, batch);
         let tracer = context.tracer_of(group.draw_index);

@@ -96,6 +96,7 @@ impl<T: Number> Default for TangentRows<T> {
 impl<T: ShadingNumber> Shader<T> {
     /// Computes t at the pixels of the group: texel x tint x vertex colour, each 1 if absent.
     pub(crate) fn texels(&mut self, group: &Group<'_, T>, shaded: &Shaded) {
+        // Rows start as the tint; the texture and vertex colours multiply them.
         for (row, tint) in self.texels.iter_mut().zip(shaded.tint) {
             row[..self.fragments.len].fill(T::from_f64(tint));
         }
@@ -118,6 +119,7 @@ impl<T: ShadingNumber> Shader<T> {
     pub(super) fn take_vertex_colors(&mut self, group: &Group<'_, T>) {
         let Self { attributes, vertex_colors, .. } = self;
         let mesh = &group.draw.model.mesh;
+        // Vertex colours are decoded before they are interpolated, like texels.
         let decoded = |c: f32| match group.context.plan.variants.decoding() {
             Decoding::Linear => linear(f64::from(c)),
             Decoding::Stored => f64::from(c),
@@ -224,6 +226,7 @@ impl<T: ShadingNumber> Shader<T> {
             return [1.0; BATCH];
         };
         let mut opacities = [*opacity as f32; BATCH];
+        // A texture without transparent texels changes no opacity.
         let texture = texture.as_ref().filter(|it| it.picture.least_alpha() < 255);
         if texture.is_none() && opacity_map.is_none() {
             return opacities;

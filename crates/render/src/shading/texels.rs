@@ -126,6 +126,7 @@ impl TextureSamples<'_, f32> {
             let w = lanes.load(&barycentrics.w, at);
             let way = texture.way(simd, &slots, barycentrics.weights_at(lanes, at));
             let mut position = texture.position(simd, &slots, way);
+            // Rarely needed: f32 cannot tell apart the texels of some triangles.
             if !texture.far.is_empty() {
                 position = self.far_positions(simd, at, position);
             }
@@ -145,6 +146,7 @@ impl TextureSamples<'_, f32> {
         let Self { points: Points { fragments, .. }, texture, .. } = *self;
         let lanes = Sixteen(simd);
         self.place::<S, PAGES>(simd, places);
+        // A copy, because the places are moved for each of the four heights.
         let own = places.position;
         let mut heights = [[0.0; BATCH]; 4];
         // Central differences: heights one texel to the right, left, above and below.
@@ -244,6 +246,7 @@ impl PlacedTexture<'_> {
         if self.sampler.filter.reads_mips() {
             let [right, below] = [0, 1].map(|which| self.step(simd, of, way, which));
             let squared = |[u, v]: [f32x16<S>; 2]| u * u + v * v;
+            // The longer step selects the mipmap; anisotropic filtering needs the shorter one, too.
             let squares = [squared(right), squared(below)];
             lanes.store(Real::max(squares[0], squares[1]), &mut to.footprint, at);
             if self.sampler.filter == Filter::Anisotropic {
@@ -293,6 +296,7 @@ impl PlacedTexture<'_> {
         axis: usize,
     ) -> f32x16<S> {
         let texels = of.pick(simd, &self.placement.first[axis]) + way;
+        // Rounding must not leave the range of the corners.
         let texels = Real::max(texels, of.pick(simd, &self.placement.low[axis]));
         Real::min(texels, of.pick(simd, &self.placement.high[axis]))
     }
@@ -325,6 +329,7 @@ pub(crate) fn steps<T: AttributeNumber>(
     slot: usize,
 ) -> Option<Steps> {
     if attributes.cut >> slot & 1 == 1 {
+        // Clipped triangles have no screen corners, but homogeneous weights are linear as well.
         let number = attributes.numbers[slot];
         let steps = HomogeneousWeights::new(plan, draw, number, [0; 2]).steps();
         return Some(steps.map(|steps| steps.map(|step| step * plan.spacing)));
@@ -341,6 +346,7 @@ pub(crate) fn steps<T: AttributeNumber>(
     // The steps of the barycentric coordinates of the second and third corner.
     let right = [c[1] - a[1], a[1] - b[1]].map(|step| step * per_pixel);
     let down = [a[0] - c[0], b[0] - a[0]].map(|step| step * per_pixel);
+    // The weights add up to 1, so the first one falls by the sum of the others' steps.
     Some(
         [right, down].map(|[second, third]| {
             [-(second + third) * by_w[0], second * by_w[1], third * by_w[2]]

@@ -55,6 +55,7 @@ impl Shader<f32> {
         corner: [i32; 2],
         (canvas, at): (&mut Canvas<'_>, usize),
     ) -> bool {
+        // If the list is full or holds larger triangles, the waiting blocks are coloured first.
         if !self.fragments.have_room_for_tiny(runs) || self.waiting.is_empty() {
             self.finish_waiting(group.context, canvas);
             if group.path.list != ListPath::Tiny {
@@ -71,6 +72,7 @@ impl Shader<f32> {
             return false;
         }
         let order = group.draw.model.mesh.draw_order();
+        // Read when the list is full, so prefetches have time to arrive.
         each[from..].iter().for_each(|number| order.prefetch(number - group.base));
         self.waiting.push(Waiting { from, at });
         true
@@ -100,10 +102,12 @@ impl Shader<f32> {
         for block in 0..self.waiting.len() {
             let Waiting { from, at } = self.waiting[block];
             let end = self.waiting.get(block + 1).map_or(all.len, |next| next.from);
+            // The entries of the block are rebuilt; any depth serves.
             let mut visibility = [0; BLOCK_PIXELS];
             for (place, number) in all.pixels[from..end].iter().zip(&all.each()[from..end]) {
                 visibility[usize::from(*place) % BLOCK_PIXELS] = word(1, *number);
             }
+            // Any pixel tells the corner of its block.
             let corner = [all.x[from], all.y[from]].map(|at| at & !7);
             self.fragments.list(context.level, &visibility, corner, 0);
             self.color_fragments(context, &mut Out::Tile(canvas, at));
@@ -237,6 +241,7 @@ impl TinyTriangles {
         corners: impl Fn(u32, [u32; 3]) -> [u32; 3],
         prefetch: impl Fn(u32),
     ) {
+        // All vertices are requested before any corner is looked up, so the fetches overlap.
         for (ids, number) in self.ids.iter_mut().zip(numbers) {
             *ids = order.vertices_of(number - base);
             ids.iter().for_each(|id| prefetch_index(vertices, *id as usize));
@@ -269,6 +274,7 @@ fn weigh<S: Simd>(
         let [[x0, y0, _, w0], [x1, y1, _, w1], [x2, y2, _, w2]] =
             corners(simd, &triangles.ids[at..], vertices);
         let edges = Edges::new(grid, [[x0, y0], [x1, y1], [x2, y2]]);
+        // Unused lanes hold old triangles, which must not reject the list.
         let own = u64::MAX >> (64 - (fragments.len - at).min(16));
         odd |= (edges.cut | edges.wide).to_bitmask() & own;
         let front = edges.area.simd_lt(0).to_bitmask();
@@ -305,6 +311,7 @@ fn sample<S: Simd>(
             normals_at(simd, normals, places, 1),
             normals_at(simd, normals, places, 2),
         ];
+        // Back faces are lit with reversed normals.
         if turns {
             let back = mask32x16::from_bitmask(simd, triangles.back[at / 16] & 0xffff);
             (a, b, c) = (turned(a, back), turned(b, back), turned(c, back));
@@ -364,6 +371,7 @@ fn mix<S: Simd>(
         let second = Vec3([r, g, b]).minus(first);
         let [r, g, b, _] = lanes.load_four(&rows[2], at);
         let third = Vec3([r, g, b]).minus(first);
+        // The same operations as with slots, so the bits are equal.
         let color = between([first, second, third], weights.weights_at(lanes, at));
         colors.store_by(lanes, color, lanes.load(thresholds, at), at);
     }

@@ -194,11 +194,13 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
     ) {
         let kept = self.kept_bits();
         self.back &= kept;
+        // With back-face culling only front faces get here.
         if draw.back == Back::Culled {
             return;
         }
         let (ids, new) = (&self.ids, self.new_slots());
         let (front, odd) = dispatch!(level, simd => fronts(simd, ids, new, vertices));
+        // A mirrored object reverses the winding on the screen.
         let back = if draw.mirrored { front } else { !front };
         self.back |= back & !kept;
         // Clipped and wide triangles are decided one by one.
@@ -219,6 +221,7 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
     ) {
         (self.grid, self.spacing) = (plan.variants.grid(), plan.spacing);
         T::prepare(level, self, vertices);
+        // The screen vertices hold 1/w in f32, and perspective needs no z.
         if !T::EXACT && plan.eye == Eye::Point {
             return;
         }
@@ -260,6 +263,7 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
         let points = order.points(draw.normal_source);
         for (slot, number) in self.numbers[..self.count].iter().enumerate().skip(self.kept) {
             let normals = match draw.normals {
+                // Flat normals: all corners carry the normal of the polygon.
                 Normals::Face => {
                     let polygon = mesh.polygon_of(*number);
                     [mesh.polygon_normals()[polygon as usize]; 3]
@@ -286,6 +290,7 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
         let order = mesh.draw_order();
         let points = order.points(draw.normal_source);
         for (slot, number) in self.numbers[..self.count].iter().enumerate().skip(self.kept) {
+            // Light is stored by corner with face normals, else by point.
             let places = match draw.normals {
                 Normals::Face => mesh.triangles()[*number as usize].corners,
                 Normals::Vertex => points.of(order, *number, self.ids[slot]),
@@ -321,6 +326,7 @@ impl<T: Number> Kernel<T> for Spread<'_, T> {
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
         let Self(attributes) = self;
         for at in attributes.new_slots().step_by(M::LANES) {
+            // Groups begin at the first new slot, so the last one may move back to fit in the rows.
             let at = at.min(SLOTS - M::LANES);
             let a = carried(lanes, &attributes.carried[0], at);
             let b = carried(lanes, &attributes.carried[1], at);
@@ -368,6 +374,7 @@ impl AttributeNumber for f64 {
                 (x[slot], y[slot]) = (own.at().x, own.at().y);
             }
         }
+        // Exact arithmetic computes all other triangles in 64-bit integers, like wide ones.
         attributes.wide = !attributes.cut;
     }
 }
@@ -379,6 +386,7 @@ impl AttributeNumber for f32 {
         let kept = attributes.kept_bits();
         (attributes.cut, attributes.wide) = (attributes.cut & kept, attributes.wide & kept);
         dispatch!(level, simd => prepare(simd, attributes, vertices));
+        // Unused slots of the last group have meaningless bits.
         let used = u64::MAX >> (SLOTS - attributes.count.max(1));
         (attributes.cut, attributes.wide) = (attributes.cut & used, attributes.wide & used);
     }
@@ -405,6 +413,7 @@ fn fronts<S: Simd>(
         // BEYOND is the smallest integer, so one minimum finds corners beyond the clipping planes.
         let beyond = low[0].simd_eq(ScreenVertex::BEYOND);
         let wide = (high[0] - low[0]).simd_gt(NARROW_BOX) | (high[1] - low[1]).simd_gt(NARROW_BOX);
+        // 32 bits are enough for triangles that are not wide.
         let area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0);
         front |= area.simd_lt(0).to_bitmask() << at;
         odd |= (beyond | wide).to_bitmask() << at;
@@ -423,6 +432,7 @@ pub(crate) fn is_front(
     if own.iter().all(ScreenVertex::is_inside) {
         return doubled_area(own.map(|vertex| vertex.at())) < 0;
     }
+    // Corners beyond a clipping plane have no screen position, so clip space decides.
     let order = draw.model.mesh.draw_order();
     let screen = Screen::new(draw.clip_from_object, plan.viewport);
     faces_observer(ids.map(|vertex| screen.clip(order.position(vertex))))
@@ -435,6 +445,7 @@ fn prepare<S: Simd>(simd: S, attributes: &mut TriangleAttributes<f32>, vertices:
         let at = at.min(SLOTS - 16);
         let [[x0, y0, _, w0], [x1, y1, _, w1], [x2, y2, _, w2]] =
             corners(simd, &attributes.ids[at..], vertices);
+        // Screen corners are kept, because wide triangles, spans and footprints need them.
         for ([own_x, own_y], (x, y)) in
             attributes.corners.iter_mut().zip([(x0, y0), (x1, y1), (x2, y2)])
         {
@@ -446,6 +457,7 @@ fn prepare<S: Simd>(simd: S, attributes: &mut TriangleAttributes<f32>, vertices:
         }
         let edges = Edges::new(attributes.grid, [[x0, y0], [x1, y1], [x2, y2]]);
         attributes.cut |= edges.cut.to_bitmask() << at;
+        // Side lengths of clipped triangles are meaningless, so they never count as wide.
         attributes.wide |= (edges.wide.to_bitmask() & !edges.cut.to_bitmask()) << at;
         edges.per_area().store_slice(&mut attributes.per_area[at..at + 16]);
         for (rows, functions) in attributes.edges.iter_mut().zip(edges.functions) {

@@ -53,8 +53,10 @@ impl<T: ShadingNumber> Shader<T> {
                 put_others(context, visibility, shown, (canvas, at), fill);
                 return shown.triangles | shown.lines != 0;
             }
+            // The block does not fit in, so the waiting ones are coloured and it begins a list.
             self.finish_waiting(context, canvas);
         }
+        // Triangles that were prepared for the last list may keep their slots.
         let most = self.most_slots(context);
         let shown = self.fragments.list_runs(context.level, &runs, corner, most);
         put_others(context, visibility, shown, (canvas, at), fill);
@@ -62,6 +64,7 @@ impl<T: ShadingNumber> Shader<T> {
             return shown.lines != 0;
         }
         match one_group(context, &self.fragments) {
+            // The block becomes the first of a list, if more may follow.
             Some(group) if self.has_room() && group.path.list != ListPath::Alone => {
                 self.waiting.push(Waiting { from: 0, at });
             }
@@ -85,6 +88,7 @@ impl<T: ShadingNumber> Shader<T> {
     ) {
         if !self.waiting.is_empty() {
             let are_tiny = self.fragments.are_tiny();
+            // All waiting blocks show one surface, so the first triangle tells the group.
             let first =
                 if are_tiny { &self.fragments.each()[0] } else { &self.fragments.numbers[0] };
             let group = group_of(context, *first);
@@ -105,6 +109,7 @@ impl<T: ShadingNumber> Shader<T> {
         corner: [i32; 2],
         at: usize,
     ) -> Option<Shown> {
+        // With more slots than this, every gather takes longer.
         if !self.fragments.have_room(runs, most_gathered(context.level)) {
             return None;
         }
@@ -116,6 +121,7 @@ impl<T: ShadingNumber> Shader<T> {
             self.fragments.take_back(len, count);
             return None;
         }
+        // A block without triangles gets its lines and background from `put_others`.
         if shown.triangles != 0 {
             self.waiting.push(Waiting { from: len, at });
         }
@@ -129,6 +135,7 @@ impl<T: ShadingNumber> Shader<T> {
 
     /// Copies the colours into the waiting blocks.
     pub(super) fn copy_waiting(&self, canvas: &mut Canvas<'_>) {
+        // The fragments of a block end where the next block begins.
         let ends = self.waiting.iter().skip(1).map(|next| next.from).chain([self.fragments.len]);
         for (Waiting { from, at }, end) in self.waiting.iter().copied().zip(ends) {
             self.copy(canvas, from..end, at);
@@ -159,11 +166,13 @@ fn put_others<T>(
     (canvas, at): (&mut Canvas<'_>, usize),
     fill: Option<Color>,
 ) {
+    // The whole block is filled; its triangles are stored over the background afterwards.
     if let Some(color) = fill
         && (shown.triangles | shown.lines) != u64::MAX
     {
         canvas.fill(at, color.opaque());
     }
+    // Lines are not lit, so their colours are final.
     for i in Bits(shown.lines) {
         if let Visible::Line(line) = seen(visibility[i]) {
             canvas.pixels[at + canvas.offset(in_block(i))] =

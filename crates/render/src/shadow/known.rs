@@ -60,6 +60,7 @@ impl KnownShadows {
     pub(crate) fn keep(&mut self, size: Size, sources: &[Option<ShadowSource>]) {
         let before = std::mem::take(&mut self.lights);
         let mut before: Vec<KnownLight> = before.into_iter().flatten().collect();
+        // Lights are matched by source, because their numbers in the plan may change.
         let mut kept = |source: &ShadowSource| match before
             .iter()
             .position(|known| known.source.is_same(source))
@@ -114,15 +115,18 @@ impl KnownLight {
     /// Adds results for the block that holds this pixel.
     #[inline(always)]
     pub(crate) fn note(&self, pixel: [i32; 2], new: KnownPixels) {
+        // No other thread writes to this block meanwhile, so no atomic update is needed.
         let KnownPixels { traced, shaded } = self.at(pixel);
         if let Some(block) = self.block(pixel) {
             block.traced.store(traced | new.traced, Ordering::Relaxed);
+            // A retraced pixel replaces its earlier result.
             block.shaded.store(shaded & !new.traced | new.shaded, Ordering::Relaxed);
         }
     }
 
     #[inline(always)]
     fn block(&self, pixel: [i32; 2]) -> Option<&KnownBlock> {
+        // A negative index becomes the largest number, which is in no block.
         let [column, row] = pixel.map(|i| usize::try_from(i / BLOCK).unwrap_or(usize::MAX));
         self.blocks.get(row.checked_mul(self.columns)?.checked_add(column)?)
     }
@@ -141,6 +145,7 @@ impl BatchPixels<'_> {
     /// Converts a mask over the batch to a mask over the block.
     #[inline(always)]
     pub(crate) fn in_block(self, positions: u64) -> u64 {
+        // The pixels of a full block are listed in order, so both masks are equal.
         if self.places.len() == BLOCK_PIXELS {
             return positions;
         }

@@ -75,6 +75,7 @@ impl Bordered {
                     continue;
                 };
                 let texel = |x: usize| if x < side { from[place(side, x, y)] } else { 0.0 };
+                // The border columns belong to other tiles; the columns between are whole blocks.
                 to[0] = left.checked_sub(1).map_or(0.0, texel);
                 to[ROWS - 1] = texel(left + TILE_SIDE);
                 for (block, to) in to[1..].chunks_exact_mut(8).enumerate() {
@@ -97,6 +98,7 @@ impl Bordered {
                 let steepest = f32x16::splat(simd, limit.steepest);
                 let most = if limit.is_perspective { steepest * depth } else { steepest };
                 let moved = depth - slope.min(most) * limit.reach - depth * ROUNDING;
+                // A drawn texel stays above 0, because 0 marks an empty one.
                 let moved = moved.max(f32x16::splat(simd, f32::MIN_POSITIVE));
                 // Empty texels stay 0. The row is split into two blocks because textures are stored
                 // by block.

@@ -69,8 +69,10 @@ impl MapDraws {
     /// Creates the draws of a plan's casters. The pictures of a map differ only in their view.
     pub(super) fn new(plan: &FramePlan, form: ShadowMapForm) -> Self {
         let casters = plan.shadows.casters.clone();
+        // Only depths are read, so all parts without holes share one pipeline.
         let mut pipelines = vec![Pipeline::Flat(Color::WHITE)];
         let draws = casters.iter().map(|caster| draw(caster, &mut pipelines)).collect();
+        // A map has one depth per texel, whatever samples and variants the view uses.
         let plan = FramePlan {
             size: Size::new(form.side, form.side),
             viewport: Size::new(form.side, form.side).into(),
@@ -103,6 +105,7 @@ impl MapDraws {
             draw.clip_from_object = view.clip_from_view * draw.view_from_object;
             draw.mirrored = DMat3::from_mat4(draw.view_from_object).determinant() < 0.0;
         }
+        // A picture is always finished: cancellation is checked between lights.
         geometry.build(
             level,
             plan,
@@ -236,6 +239,7 @@ impl Tile<'_> {
         let [zp, zq, zr] = clip.map(|[_, _, z, _]| z);
         let plane = q.cross(r) * zp + r.cross(p) * zq + p.cross(q) * zr;
         let slope = (plane.x.abs() + plane.y.abs()) / p.dot(q.cross(r)).abs();
+        // A triangle seen exactly edge-on has no finite slope.
         if slope.is_finite() { slope as f32 } else { 0.0 }
     }
 }
@@ -256,6 +260,7 @@ fn draw(caster: &Caster, pipelines: &mut Vec<Pipeline>) -> Draw {
         view_from_object: DMat4::IDENTITY,
         view_from_normal: DMat3::IDENTITY,
         mirrored: false,
+        // Both sides of a surface cast shadows.
         back: Back::Lit,
         culls_opaque: false,
         normals: Normals::Vertex,

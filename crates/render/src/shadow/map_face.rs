@@ -50,6 +50,7 @@ impl Face {
     pub(super) fn new(clip_from_world: DMat4, side: usize, texels: Vec<f32>) -> Self {
         let half = side as f64 / 2.0;
         let [x, y, z, w] = clip_from_world.transpose().to_cols_array_2d();
+        // Scales x and y from -1..1 to texels, with y down, before the division by w.
         let right = std::array::from_fn(|i| (x[i] + w[i]) * half);
         let down = std::array::from_fn(|i| (w[i] - y[i]) * half);
         Self { rows: [right, down, z, w], side, texels }
@@ -96,6 +97,7 @@ impl LightMap {
                 let by = 1.0 / w;
                 (x[i], y[i]) = (row(&face.rows[0], i) * by, row(&face.rows[1], i) * by);
                 z[i] = row(&face.rows[2], i) * by;
+                // NaN counts as outside, because every comparison with it is false.
                 let within = (w > 0.0) & (x[i] >= 0.0) & (x[i] < side) & (y[i] >= 0.0);
                 is_inside[i] = u8::from(within & (y[i] < side));
             }
@@ -104,6 +106,7 @@ impl LightMap {
                 if is_inside[i] == 0 {
                     continue;
                 }
+                // The first picture that holds a point decides: pictures share only their borders.
                 left &= !(1 << i);
                 let (column, line, depth) = (x[i] as usize, y[i] as usize, z[i] as f32);
                 if self.is_filtered {

@@ -46,6 +46,7 @@ const NEAR: f64 = 1e-3;
 impl ShadowMaps {
     /// Draws the missing maps of a plan, unless cancelled, and drops all others.
     pub(crate) fn update(&mut self, level: Level, plan: &FramePlan, watch: &Cancellation<'_>) {
+        // Ray tracing and frames without shadows keep no maps.
         let Some(form) = plan.variants.shadow_method.map().filter(|_| plan.shadows.are_cast())
         else {
             return *self = Self::default();
@@ -70,10 +71,12 @@ impl ShadowMaps {
         }
         let mut draws = MapDraws::new(plan, form);
         for source in missing {
+            // A cancelled update keeps the finished maps; the next update draws the rest.
             if !watch.goes_on() {
                 return;
             }
             let views = views_of(&source, &Around::of(casters));
+            // Empty pictures are dropped, because points outside all pictures are lit.
             let faces = views.iter().filter_map(|view| draws.face(level, view)).collect();
             self.lights.push((source, LightMap { faces, is_filtered: form.is_filtered }));
         }
@@ -94,6 +97,7 @@ impl Around {
             let bounds = caster.model.mesh.bounds()?;
             Some(bounds.corners().map(|corner| caster.world_from_object.transform_point3(corner)))
         };
+        // One infinite corner would make the range of all casters infinite.
         let is_finite = |corners: &[DVec3; 8]| corners.iter().all(|p| p.is_finite());
         Self(casters.iter().filter_map(corners).filter(is_finite).collect())
     }
@@ -120,12 +124,14 @@ fn views_of(source: &ShadowSource, around: &Around) -> Vec<MapView> {
     match source {
         ShadowSource::Direction(towards) => sun(*towards, around).into_iter().collect(),
         ShadowSource::Cone { at, direction, cos_half_aperture } if *cos_half_aperture > WIDEST => {
+            // A closed cone would have an infinite focal length.
             let cos = cos_half_aperture.min(1.0 - 1e-9);
             let sine = (1.0 - cos * cos).sqrt();
             // Slightly wider than the cone, so PCF finds texels beyond its border.
             vec![face(*at, *direction, cos / sine * 0.98, around)]
         }
         ShadowSource::Point(at) | ShadowSource::Cone { at, .. } => {
+            // Six pictures of 90 degrees form a cube map around the light.
             let axes = DVec3::AXES.into_iter().chain(DVec3::AXES.map(|axis| -axis));
             axes.map(|axis| face(*at, axis, 1.0, around)).collect()
         }
@@ -148,6 +154,7 @@ fn sun(towards: DVec3, around: &Around) -> Option<MapView> {
     }
     // A margin of a few texels on each side.
     let half = ranges.map(|[low, high]| (high - low) * 0.51 + f64::MIN_POSITIVE);
+    // Casters in one plane get a thin volume, so no scale becomes extreme.
     let longest = half[0].max(half[1]).max(half[2]) * 1e-6;
     let half = half.map(|half| half.max(longest));
     let middle = DVec3::from_array(ranges.map(|[low, high]| low.midpoint(high)));
@@ -166,6 +173,7 @@ fn face(at: DVec3, direction: DVec3, focal: f64, around: &Around) -> MapView {
     let view_from_world = placed(along(direction), DVec3::ZERO) * DMat4::from_translation(-at);
     let [_, farthest] = around.range(|p| p.distance(at));
     let near = (farthest * NEAR).max(around.nearest(at) * 0.9).max(f64::MIN_POSITIVE);
+    // The depth is near / w: 1 at the near plane and 0 at infinity, without a far plane.
     let clip_from_view = DMat4::from_cols_array_2d(&[
         [focal, 0.0, 0.0, 0.0],
         [0.0, focal, 0.0, 0.0],

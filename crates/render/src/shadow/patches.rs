@@ -37,11 +37,13 @@ pub(super) fn find_patches(
 ) {
     let mut open = vec![u64::MAX >> (POINTS - len)];
     while let Some(points) = open.pop() {
+        // The unused end of the list repeats the first point, so a box of all points needs no copy.
         let around = if points.count_ones() as usize == len {
             around(at, points, &normal)
         } else {
             around(&only(at, points), points, &normal)
         };
+        // Every patch costs a shaft and a traversal for each caster, so their number is limited.
         let may_be_divided = patches.len() + open.len() + 1 < MOST;
         match may_be_divided.then(|| divided(at, points, &around)).flatten() {
             Some(parts) => open.extend(parts),
@@ -71,6 +73,7 @@ fn around(at: &[[f64; POINTS]; 3], points: u64, normal: impl Fn(usize) -> Option
         let i = nth(points, n);
         DVec3::new(at[0][i], at[1][i], at[2][i])
     };
+    // In a full block, these are both ends of the first row and the last pixel.
     let [a, b, c] = [point(0), point(count.min(8) - 1), point(count - 1)];
     let normal = normal(nth(points, count / 2)).unwrap_or_else(|| (b - a).cross(c - a));
     Around::new(at, normal, b - a)

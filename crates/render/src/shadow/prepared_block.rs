@@ -68,6 +68,7 @@ fn placed<S: Simd>(simd: S, world_from_object: &DMat4, corner: &[[f32; BVH_BLOCK
         #[inline(always)]
         |axis: usize| {
             let [a, b, c] = [m.x_axis[axis], m.y_axis[axis], m.z_axis[axis]];
+            // The order of the sums is glam's.
             z * c + (y * b + x * a) + m.w_axis[axis]
         },
     ))
@@ -144,11 +145,13 @@ impl PreparedBlock {
         light: DVec3,
     ) -> (f64x8<S>, u64) {
         let (one, zero) = (f64x8::splat(simd, 1.0), f64x8::splat(simd, 0.0));
+        // The sign makes the plane function positive on the side away from the light.
         let sign = of_light.simd_gt(zero).select(-one, one);
         let sure = of_light.abs().simd_gt(size * ERROR).to_bitmask();
         if sure == (1 << BVH_BLOCK) - 1 {
             return (sign, sure);
         }
+        // The light almost lies in some of the planes: exact arithmetic finds its sides.
         let mut signs = [0.0; BVH_BLOCK];
         sign.store_slice(&mut signs);
         let sided = sure | self.settle(light, sure, &mut signs);
@@ -190,6 +193,7 @@ impl PreparedBlock {
             between &= value.simd_gt(error).to_bitmask();
             possible &= value.simd_ge(-error).to_bitmask();
         }
+        // After an early exit, `between` still holds triangles with untested functions.
         between &= possible;
         Decided { between, open: possible & !between }
     }

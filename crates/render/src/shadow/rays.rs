@@ -52,6 +52,7 @@ impl Origins {
     pub(crate) fn begin(&mut self, caster: Option<u32>, in_triangle: bool) {
         (self.caster, self.in_triangle, self.reach) = (caster, in_triangle, 0.0);
         (self.lifted, self.len) = (0, 0);
+        // Patches are only computed if a ray is traced.
         self.patches.clear();
     }
 
@@ -88,6 +89,7 @@ impl Origins {
             let first = row[0];
             row[len..].fill(first);
         }
+        // Taken out of `self`, so `normal` can borrow the points.
         let mut patches = std::mem::take(&mut self.patches);
         find_patches(&self.at, len, |i| normal(self, i), &mut patches);
         self.patches = patches;

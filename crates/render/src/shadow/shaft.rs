@@ -57,6 +57,7 @@ impl Around {
             *length = (high - low) * 0.5;
         }
         let longest = lengths.iter().copied().fold(0.0, f64::max);
+        // The margin covers the rounding of the axes and of the coordinates.
         let more = longest * WIDER + (first.abs().max_element() + longest) * ROUNDED;
         let halves = each([0, 1, 2], |i: usize| axes[i] * (lengths[i] + more));
         Self { centre, halves }
@@ -127,6 +128,7 @@ impl Shaft {
         let [a, b, c] = each(around.halves, |half| m.transform_vector3(half));
         let way = m.transform_point3(light) - centre;
         let length = way.length();
+        // Beyond 8 times the largest coordinate, rays meet no box of the caster.
         let share = (8.0 * far / length).min(1.0);
         let along = way / length;
         // Planes turn with the box: `right` follows one of its edges.
@@ -137,6 +139,7 @@ impl Shaft {
         // Planes along the rays are tilted by the opening of the shaft, so they touch box and
         // light.
         let plane = |i: usize| match i {
+            // A normal of zero excludes no box.
             _ if far > FARTHEST => DVec3::ZERO,
             0..8 => {
                 let across = right * ACROSS[i][0] + up * ACROSS[i][1];

@@ -79,6 +79,7 @@ impl<'a> Tracer<'a> {
 
     /// Returns the distance of the suns of a frame.
     pub(crate) fn sun_distance(shadows: &Shadows) -> f64 {
+        // Naming a map method avoids building BVHs: only bounds are needed here.
         let in_place = |caster| InPlace::new(caster, ShadowMethod::Map512);
         sun_distance(&shadows.casters.iter().filter_map(in_place).collect::<Vec<_>>())
     }
@@ -153,6 +154,7 @@ impl<'a> Tracer<'a> {
         if scratch.origins.patches.is_empty() {
             scratch.origins.find_patches(|origins, i| self.normal_at(origins, i));
         }
+        // A blocked ray leaves the packet, so later casters see fewer rays.
         let mut alive = mask;
         for (index, placed) in (0_u32..).zip(&self.casters) {
             alive &= !self.behind(simd, (index, placed), light, scratch, alive);
@@ -256,6 +258,7 @@ impl<'a> Tracer<'a> {
         for block in &tree.blocks[leaf.blocks()] {
             let own = (block, &placed.caster.world_from_object);
             let possible = prepared.set(simd, own, (&packet.around, packet.light), origins.reach);
+            // The last block of a leaf repeats its last triangle; the repetitions are masked out.
             let possible = possible & ((1 << left.min(BVH_BLOCK)) - 1);
             if possible != 0 {
                 let block = (placed, block, &*prepared);
@@ -309,6 +312,7 @@ impl<'a> Tracer<'a> {
         (ray, sure): (usize, bool),
     ) -> bool {
         let corners = &triangle.corners;
+        // A point is on the light's side of a plane if its own triangle is, however it was rounded.
         let is_between = sure
             || (self.own_reaches_behind(origins, ray, corners, packet.light)
                 && is_between(corners, packet.light, origins.point(ray)));
@@ -337,6 +341,7 @@ impl<'a> Tracer<'a> {
     pub(crate) fn corners_of(&self, caster: u32, triangle: u32) -> Corners {
         let InPlace { caster, .. } = &self.casters[caster as usize];
         let order = caster.model.mesh.draw_order();
+        // Adding 0 turns -0 into 0, as in the BVH, so both have the same bits.
         let corners = each(order.vertices_of(triangle), |vertex| {
             let i = vertex as usize;
             [order.x[i] + 0.0, order.y[i] + 0.0, order.z[i] + 0.0]
@@ -398,6 +403,7 @@ impl<'a> InPlace<'a> {
         let error = low.abs().max(high.abs()).max_element() * 1e-14;
         let object_from_world = m.inverse();
         let (low, high) = (low - error, high + error);
+        // An infinite box or a singular placement cannot be traced and casts no shadow.
         let is_finite = low.is_finite() && high.is_finite() && object_from_world.is_finite();
         is_finite.then(|| Self {
             caster,
@@ -419,6 +425,7 @@ impl<'a> InPlace<'a> {
 /// Computes the distance of suns for these casters.
 fn sun_distance(casters: &[InPlace<'_>]) -> f64 {
     let reach = casters.iter().map(InPlace::reach).fold(f64::MIN_POSITIVE, f64::max);
+    // A power of two changes rarely as casters move; a change would invalidate cached shadows.
     power_of_two_above(reach) * SUN
 }
 

@@ -87,6 +87,7 @@ impl Prepared {
     /// Returns the barycentric coordinates at which a ray crosses the triangle.
     pub(super) fn parts(&self, p: DVec3) -> DVec3 {
         let value = |i: usize| self.normals[i].dot(p - self.corners[i]).max(0.0);
+        // Edge functions are proportional to the weights of the opposite corners.
         let parts = DVec3::new(value(1), value(2), value(0));
         let sum = parts.element_sum();
         if sum > 0.0 { parts / sum } else { DVec3::splat(1.0 / 3.0) }

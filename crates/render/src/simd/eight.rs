@@ -26,6 +26,7 @@ impl<S: Simd> Real for f64x8<S> {
     #[inline(always)]
     fn reciprocal_root(self) -> Self {
         let (zero, one) = (self.lift(0.0), self.lift(1.0));
+        // Comparisons with NaN are false, so NaN gives 0 as well.
         let is_normal = self.simd_gt(zero) & self.simd_lt(self.lift(f64::INFINITY));
         is_normal.select(one / self.sqrt(), zero)
     }
@@ -38,10 +39,13 @@ impl<S: Simd> Real for f64x8<S> {
     #[inline(always)]
     fn power(self, power: &Power) -> Self {
         if power.variant == Some(SpecularPower::Polynomial) {
+            // The polynomial exists in f32 only; both halves of its lanes hold these numbers.
             let (result, zero) = (self.narrow(self).power(power).widen().0, self.lift(0.0));
+            // The same checks as for a single number, in f64.
             let above = result.if_more(self.lift(power.least), result, zero);
             return self.if_more(zero, above, zero);
         }
+        // The other variants compute one number at a time.
         let mut lanes: [f64; 8] = *self;
         for lane in &mut lanes {
             *lane = lane.power(power);
@@ -60,6 +64,7 @@ impl<S: Simd> Real for f64x8<S> {
 
     #[inline(always)]
     fn max(self, other: Self) -> Self {
+        // x86 has an instruction with exactly this rule for NaN and zeros.
         if has_own_maximum(self.simd) {
             return <Self as SimdBase<S>>::max(self, other);
         }
@@ -136,6 +141,7 @@ impl<S: Simd> Lanes for Eight<S> {
             before_rounding(g, threshold).floor(),
             before_rounding(b, threshold).floor(),
         ];
+        // f64 holds the four bytes of a pixel exactly, so they are added up as one number.
         let pixels = r + g * 256.0 + b * 65536.0 + f64::from(255_u32 << 24);
         store_whole(pixels, &mut row[at..at + 8]);
     }
@@ -170,6 +176,7 @@ impl<S: Simd> Lanes for Eight<S> {
     fn pick<const PAGES: usize>(self, row: &[f64; SLOTS], slots: [i32; 8]) -> f64x8<S> {
         let mut picked = [0.0; 8];
         for (picked, slot) in picked.iter_mut().zip(slots) {
+            // The remainder leaves valid slots as they are and spares a bounds check.
             *picked = row[slot.cast_unsigned() as usize % SLOTS];
         }
         f64x8::from_slice(self.0, &picked)

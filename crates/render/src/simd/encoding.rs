@@ -20,7 +20,9 @@ impl Encoding {
     #[inline(always)]
     pub(crate) fn of<R: Real>(&self, linear: R) -> R {
         let (zero, one) = (linear.lift(0.0), linear.lift(1.0));
+        // The maximum comes first: it turns NaN into 0.
         let x = Real::min(Real::max(linear, zero), one);
+        // Both pieces of the curve are computed in all lanes; the selection keeps one.
         let curve = x.power_times(&self.0, one) * x.lift(1.055) - x.lift(0.055);
         x.if_more(x.lift(0.003_130_8), curve, x * x.lift(12.92))
     }

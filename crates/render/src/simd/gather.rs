@@ -21,7 +21,9 @@ pub(crate) fn pick<S: Simd, const PAGES: usize>(
     match simd.level() {
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Level::Avx512(token) => {
+            // `S` is this level here, so the copy through an array only changes the type.
             let slots = i32x16::from_slice(token, &<[i32; 16]>::from(slots));
+            // The number of pages is a constant, so only one arm is compiled.
             let picked = match PAGES {
                 1 => x86::of_one(token, page(token, row, 0), slots),
                 2 => x86::of_two(token, page(token, row, 0), page(token, row, 1), slots),
@@ -35,6 +37,7 @@ pub(crate) fn pick<S: Simd, const PAGES: usize>(
             };
             i32x16::from_slice(simd, &<[i32; 16]>::from(picked))
         }
+        // AVX2 permutes eight lanes: with more than one page, numbers are gathered one by one.
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Level::Avx2(token) if PAGES == 1 => {
             let slots = i32x16::from_slice(token, &<[i32; 16]>::from(slots));
@@ -175,6 +178,8 @@ mod x86 {
     /// Gathers from sixteen numbers, by halves of eight.
     #[inline(always)]
     pub(crate) fn of_halves(token: Avx2, page: i32x16<Avx2>, slots: i32x16<Avx2>) -> i32x16<Avx2> {
+        // The instruction reads the lowest three bits of an index, so 8 to 15 fit the upper half as
+        // they are. Both halves are looked up, and the index selects one.
         let (low, high) = page.split();
         let (first, second) = slots.split();
         let from_low = of_eight(token, low, first).combine(of_eight(token, low, second));

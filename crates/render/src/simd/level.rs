@@ -11,6 +11,7 @@ use fearless_simd::Level;
 #[must_use]
 pub fn levels() -> Vec<Level> {
     let best = Level::new();
+    // A processor also has every set below its best one.
     #[cfg(target_arch = "x86_64")]
     let levels = [
         best.as_sse4_2().map(Level::Sse4_2),
@@ -61,6 +62,7 @@ macro_rules! dispatch {
             ::fearless_simd::Level::Avx2(token) => {
                 $crate::simd::level::vectorized!(token, $simd => $operation)
             }
+            // Any other level runs the code for SSE4.2, the lowest set that is compiled.
             #[cfg(target_arch = "x86_64")]
             level => match level.as_sse4_2() {
                 Some(token) => $crate::simd::level::vectorized!(token, $simd => $operation),

@@ -31,7 +31,9 @@ impl Power {
     /// from -60 to 0, by the default of the arithmetic.
     #[must_use]
     pub fn new(exponent: f64, floor: f64) -> Self {
+        // An integer exponent takes a few products instead of a logarithm and an exponential.
         let whole = (1..=Self::LARGEST).find(|n| f64::from(*n) == exponent);
+        // Its power is at least 2^-126, so still normal, and at most 2^-64, so below any floor.
         let clamped = whole.map_or(0.0, |n| libm::exp2(-f64::from(126 / n)));
         Self { exponent, floor, least: libm::exp2(floor), whole, clamped, variant: None }
     }
@@ -51,6 +53,7 @@ impl Power {
 
 /// The largest number whose power is certainly not above 2^`floor`, by a variant.
 pub(crate) fn least_cosine(variant: SpecularPower, exponent: f64, floor: f64) -> f64 {
+    // With exponent 0, every power is 1, so no cosine can be left out.
     if exponent <= 0.0 {
         return 0.0;
     }
@@ -89,6 +92,7 @@ pub(crate) fn power_of_sixteen(power: &Power, x: &mut [f32; 16]) {
         // Written in f32, so that the compiler uses vectors.
         let (n, least) = (power.exponent as f32, power.least as f32);
         for x in x.iter_mut() {
+            // The maximum turns NaN and negative numbers into 0, which gives the power 0.
             let clamped = x.max(0.0);
             let result = clamped / (n - n * clamped + clamped);
             *x = if result > least { result } else { 0.0 };

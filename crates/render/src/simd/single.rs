@@ -44,6 +44,7 @@ fn single_reciprocal_root<R: Single>(x: R) -> R {
     let y = x.halved_from(0x5f1f_fff9);
     let y = y * (x.lift(1.681_913_91) - x * x.lift(0.703_952_253) * (y * y));
     let h = x.lift(1.0) - x * y * y;
+    // Numbers without a reciprocal root hold garbage here and get 0.
     x.if_normal(y + y * (h * (x.lift(0.5) + h * x.lift(0.375))))
 }
 
@@ -63,6 +64,7 @@ fn whole_power<R: Single>(x: R, n: u32, power: &Power) -> R {
     let mut square = Real::max(x, x.lift(power.clamped));
     let mut result = x.lift(1.0);
     let mut left = n;
+    // Exponentiation by squaring: the bits of n select the squares to multiply.
     loop {
         if left & 1 == 1 {
             result = result * square;
@@ -96,9 +98,11 @@ fn any_power<R: Single>(x: R, exponent: R, power: &Power) -> R {
     let log2 = binary_logarithm(x) * exponent;
     // Clamped to the exponents of f32; results below the floor are discarded in the end.
     let clamped = Real::max(log2, x.lift(-126.0));
+    // 2^whole is exact in the exponent bits, so the polynomial only covers -1/2 to 1/2.
     let whole = clamped.round();
     let result = polynomial(clamped - whole, &EXPONENTIAL) * whole.power_of_two();
     let zero = x.lift(0.0);
+    // Comparisons with NaN are false, so NaN gives 0 like numbers that are not positive.
     x.if_more(zero, log2.if_more(x.lift(power.floor), result, zero), zero)
 }
 
@@ -118,6 +122,7 @@ fn binary_logarithm<R: Single>(x: R) -> R {
         3.333_333_117_4e-1,
     ];
     let (m, e) = Real::max(x, x.lift(SMALLEST)).split();
+    // m is between 1 / sqrt 2 and sqrt 2, so f is at most 0.42 and the polynomial stays short.
     let f = m - x.lift(1.0);
     let square = f * f;
     let ln = f - square * x.lift(0.5) + square * f * polynomial(f, &LOGARITHM);
@@ -132,8 +137,10 @@ pub(crate) fn log2<S: Simd>(x: f32x16<S>) -> f32x16<S> {
         [2.584_145e-2, -9.595_646_1e-2, 1.819_488_84e-1, -2.756_003_13e-1, 4.425_449_44e-1];
     let bits: i32x16<S> = x.bitcast();
     let m: f32x16<S> = ((bits & !EXPONENT_BITS) | ONE_BITS).bitcast();
+    // Numbers of at least 1 have no sign bit: the upper bits are the exponent alone.
     let exponent = (bits >> 23) - 127;
     let f = m - 1.0;
+    // f (1 - f) vanishes at both ends, so powers of two are exact and the pieces meet there.
     exponent.to_float::<f32x16<S>>() + (f + f * (1.0 - f) * polynomial(f, &LOGARITHM))
 }
 
@@ -185,7 +192,9 @@ impl Single for f32 {
     #[expect(clippy::cast_precision_loss, reason = "an exponent has eight bits")]
     fn split(self) -> (Self, Self) {
         let bits = self.to_bits().cast_signed();
+        // The mantissa with the exponent of 1: from 1 to below 2.
         let digits = (bits & !EXPONENT_BITS) | ONE_BITS;
+        // Mantissas above sqrt 2 are halved, and the exponent grows by one.
         let up = i32::from(digits > SQRT_2_BITS);
         let m = Self::from_bits((digits - (up << 23)).cast_unsigned());
         (m, ((bits >> 23) - 127 + up) as Self)
@@ -194,6 +203,7 @@ impl Single for f32 {
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "a whole number from -126 to 127")]
     fn power_of_two(self) -> Self {
+        // The mantissa of a power of two is 0, and its exponent bits are n + 127.
         Self::from_bits(((self as i32 + 127) << 23).cast_unsigned())
     }
 
@@ -204,6 +214,7 @@ impl Single for f32 {
 
     #[inline(always)]
     fn halved_from(self, from: i32) -> Self {
+        // Negative numbers may overflow here; `if_normal` discards their results.
         Self::from_bits(from.wrapping_sub(self.to_bits().cast_signed() >> 1).cast_unsigned())
     }
 
@@ -283,6 +294,7 @@ impl<S: Simd> Single for f32x16<S> {
         let bits: i32x16<S> = self.bitcast();
         let digits = (bits & !EXPONENT_BITS) | ONE_BITS;
         let zero: i32x16<S> = 0.simd_into(self.simd);
+        // Mantissas above sqrt 2 are halved by one step of the exponent bits.
         let up = digits.simd_gt(SQRT_2_BITS).select(zero + 1, zero);
         let m: Self = (digits - (up << 23)).bitcast();
         (m, ((bits >> 23) - 127 + up).to_float())
@@ -311,6 +323,7 @@ impl<S: Simd> Single for f32x16<S> {
         // The bits minus the bits of the smallest normal number: negative if the number is smaller.
         let above = bits - (1 << 23);
         let zero = self.lift(0.0);
+        // Infinity and NaN have all exponent bits set, so they are too large.
         let normal = above.simd_ge(0) & above.simd_lt(EXPONENT_BITS - (1 << 23));
         normal.select(yes, zero)
     }

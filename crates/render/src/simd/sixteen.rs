@@ -43,6 +43,7 @@ impl<S: Simd> Lanes for Sixteen<S> {
 
     #[inline(always)]
     fn store_four(self, [a, b, c, d]: [f32x16<S>; 4], rows: &mut [[f32; 4]], at: usize) {
+        // Interleaving undoes the deinterleaving of `load_four`, in reverse order.
         let (even_low, even_high) = a.interleave(c);
         let (odd_low, odd_high) = b.interleave(d);
         let (first, second) = even_low.interleave(odd_low);
@@ -72,11 +73,13 @@ impl<S: Simd> Lanes for Sixteen<S> {
         row: &mut [u32],
         at: usize,
     ) {
+        // The conversion to integers rounds down, because the numbers are not negative.
         let [r, g, b] = each(
             color.0,
             #[inline(always)]
             |number| before_rounding(number, threshold).to_int::<i32x16<S>>(),
         );
+        // The order of bytes in memory: red lowest, alpha 255 on top.
         let pixels = r | (g << 8) | (b << 16) | (255 << 24_i32);
         pixels.bitcast::<u32x16<S>>().store_slice(&mut row[at..at + 16]);
     }

@@ -55,6 +55,7 @@ impl ExactPlacement {
             // Clamped to the triangle's range against rounding.
             let u = if u > it.low { u } else { it.low };
             let u = if u < it.high { u } else { it.high };
+            // Whole repetitions are removed in f64, before the position is rounded to f32.
             let own = match self.wrap {
                 Wrap::Repeat => u - u.floor(),
                 Wrap::Clamp => u.clamp(0.0, 1.0),
@@ -77,7 +78,9 @@ impl Along {
     fn of_row<S: Simd>(self, [second, third]: [f64x8<S>; 2], wrap: Wrap) -> f64x8<S> {
         let simd = second.simd;
         let (low, high) = (f64x8::splat(simd, self.low), f64x8::splat(simd, self.high));
+        // Summed in the order of `at`, so that the bits are the same.
         let u = second * self.second + self.first + third * self.third;
+        // Selections by comparison treat NaN alike on every processor.
         let u = u.simd_gt(low).select(u, low);
         let u = u.simd_lt(high).select(u, high);
         let own = match wrap {

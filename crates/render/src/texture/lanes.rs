@@ -49,6 +49,7 @@ impl<'a> Sampler<'a> {
             (sizes[0][i], sizes[1][i]) = (size.width as f32, size.height as f32);
         }
         let has_texels = levels.first()?.picture.size().area() > 0;
+        // Positions are in texels of the first level; these factors convert them to each level.
         let mut scales = sizes;
         for (scales, sides) in scales.iter_mut().zip(&sizes) {
             scales.iter_mut().for_each(|side| *side /= sides[0]);
@@ -134,6 +135,7 @@ impl<'a> Sampler<'a> {
     #[inline(always)]
     fn scalar<S: Simd, N: OneNumber>(&self, simd: S, position: [f32x16<S>; 2]) -> f32x16<S> {
         let position = [self.reduced(position[0], 0), self.reduced(position[1], 1)];
+        // The alpha test reads no mipmaps, so trilinear filters count as bilinear.
         let level = MipLevel::first(self, simd);
         let number = match self.filter {
             Filter::Nearest => N::of(level.nearest(simd, self, position)),
@@ -182,9 +184,11 @@ impl<'a> Sampler<'a> {
         len: usize,
         to: &mut Rows<f32>,
     ) {
+        // If one sample suffices everywhere, the anisotropic filter takes the trilinear path.
         let most =
             if self.filter == Filter::Anisotropic { count_probes(simd, places, len) } else { 1.0 };
         let same = self.find_levels(simd, places, len);
+        // The places move along the footprint, so the middles are kept.
         let middle = places.position;
         let mut sums = [[0.0; BATCH]; 3];
         let mut probe = 0.0;
@@ -223,6 +227,7 @@ impl<'a> Sampler<'a> {
         for at in (0..len).step_by(16) {
             let count = lanes.load(&places.probes, at);
             let own = Real::min(lanes.set(probe), count - 1.0);
+            // The middles of N equal parts of the side, from -1/2 to 1/2.
             let part = (own + 0.5) / count - 0.5;
             for (axis, middle) in middle.iter().enumerate() {
                 let way = lanes.load(&places.longer[axis], at) * part;
@@ -248,11 +253,13 @@ impl<'a> Sampler<'a> {
         let mut same = [None; BATCH / 16];
         // log2 of the squared footprint, halved, is log2 of the footprint.
         for (at, same) in (0..len).step_by(16).zip(&mut same) {
+            // Footprints below one texel magnify the texture and read the first level.
             let level = log2(Real::max(lanes.load(&places.footprint, at), one)) * 0.5;
             let level = Real::max(Real::min(level, last), zero);
             let own = level.floor();
             lanes.store(own, &mut places.levels[0], at);
             lanes.store(level - own, &mut places.levels[1], at);
+            // With one level in all lanes, its size and its pixels are looked up only once.
             let number: i32x16<S> = own.to_int();
             let first = number[0];
             *same = number.simd_eq(first).all_true().then_some(first.cast_unsigned() as usize);
@@ -330,8 +337,10 @@ fn count_probes<S: Simd>(simd: S, places: &mut TexelPlaces, len: usize) -> f32 {
     for at in (0..len).step_by(16) {
         let longer = lanes.load(&places.footprint, at);
         let shorter = Real::max(lanes.load(&places.shorter, at), one);
+        // Both sides are squared, so the root of their quotient is longer / shorter.
         let count = Real::max((longer / shorter).sqrt().ceil(), one);
         let count = Real::min(count, lanes.set(MOST_PROBES));
+        // The squared footprint of one sample, which selects the level for longer / N.
         lanes.store(longer / (count * count), &mut places.footprint, at);
         lanes.store(count, &mut places.probes, at);
         most = Real::max(most, count);
@@ -351,6 +360,7 @@ fn add_probe<S: Simd>(
     let lanes = Sixteen(simd);
     for at in (0..len).step_by(16) {
         let count = lanes.load(&places.probes, at);
+        // Places with fewer samples have repeated their last one, which must not count again.
         let is_there = lanes.set(probe).simd_lt(count);
         let weight = is_there.select(lanes.set(1.0) / count, lanes.set(0.0));
         let sum = load(lanes, sums, at).plus(load(lanes, texels, at).times(weight));
@@ -484,6 +494,7 @@ struct Brightness;
 impl OneNumber for Alpha {
     #[inline(always)]
     fn of<S: Simd>(texels: i32x16<S>) -> f32x16<S> {
+        // Shifting a signed integer copies the sign bit; the mask removes the copies.
         ((texels >> 24) & 255).to_float()
     }
 }

@@ -59,8 +59,10 @@ impl Mips {
         filter: Filter,
     ) -> [T; 4] {
         let [right, below] = ways.map(|way| self.texels(way));
+        // The longer way decides the level, and anisotropic samples lie along it.
         let (way, longer, shorter) =
             if right >= below { (ways[0], right, below) } else { (ways[1], below, right) };
+        // Each sample covers a part as long as the shorter way, which is at least a texel.
         let count = match filter {
             Filter::Anisotropic => {
                 (longer / shorter.max(1.0)).ceil().clamp(1.0, MOST_PROBES.into())
@@ -73,6 +75,7 @@ impl Mips {
         }
         let (mut sum, mut probe) = ([T::from_f64(0.0); 4], 0.0);
         while probe < count {
+            // The middles of equal parts of the way.
             let part = (probe + 0.5) / count - 0.5;
             let uv = [uv[0] + way[0] * part, uv[1] + way[1] * part];
             let own: [T; 4] = self.trilinear((uv, beside), level);
@@ -100,6 +103,7 @@ impl Mips {
         let near = of(below);
         #[expect(clippy::cast_precision_loss, reason = "below 32")]
         let part = T::from_f64(level - below as f64);
+        // At level 0 and on the last level, there is nothing to mix.
         match self.levels.get(below + 1) {
             Some(_) if level > 0.0 => {
                 let far = of(below + 1);
@@ -138,6 +142,7 @@ fn halved(picture: &Picture, decoding: Decoding) -> Picture {
         let (columns, rows) = (beside(x, from.width), beside(y, from.height));
         std::array::from_fn(|channel| {
             let at = |i: usize, j: usize| u16::from(picture.pixel(columns[i], rows[j])[channel]);
+            // Alpha is linear as it is stored, so only colours are decoded.
             if decoding == Decoding::Linear && channel < 3 {
                 let of = |i, j| linear_factors()[usize::from(at(i, j))];
                 return byte(encoded((of(0, 0) + of(1, 0) + of(0, 1) + of(1, 1)) / 4.0));

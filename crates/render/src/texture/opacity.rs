@@ -66,6 +66,7 @@ impl<'a> Opacity<'a> {
 
     /// Computes the tables that [`Self::holes`] reads.
     pub(crate) fn prepare(&self) {
+        // Any question builds the tables; its answer does not matter.
         self.holes([[0.0; 2]; 2]);
     }
 
@@ -94,8 +95,10 @@ impl<'a> Opacity<'a> {
             let Some([own_low, own_high]) = layer.bounds(between, self.filter) else {
                 return Holes::Somewhere;
             };
+            // No factor is negative, so the products of bounds bound the product.
             (low, high) = (low * own_low, high * own_high);
         }
+        // Rounding may move opacities across one half, so close bounds count as mixed.
         if low >= 0.5 + ROUNDING {
             Holes::Nowhere
         } else if high < 0.5 - ROUNDING {
@@ -121,6 +124,7 @@ impl OpacityLayer<'_> {
     fn bounds(&self, [low, high]: [[f64; 2]; 2], filter: Filter) -> Option<[f64; 2]> {
         let Texture { picture, wrap, offset, scale, .. } = self.texture;
         let size = picture.size();
+        // A texture without texels counts as opaque, as in `sample`.
         if size.area() == 0 {
             return Some([1.0; 2]);
         }
@@ -161,6 +165,7 @@ fn texels(
     wrap: Wrap,
     filter: Filter,
 ) -> Option<[Option<RangeInclusive<usize>>; 2]> {
+    // Negated, so that NaN is rejected as well.
     if !(a.abs() <= FARTHEST && b.abs() <= FARTHEST) {
         return None;
     }
@@ -170,6 +175,7 @@ fn texels(
         // The alpha test reads no mipmaps.
         Filter::Bilinear | Filter::Trilinear | Filter::Anisotropic => (0.5, 1),
     };
+    // Widened by the error of positions, so no texel that drawing reads is missed.
     let first = (a.min(b) * side - before - MARGIN).floor() as i64;
     let last = (a.max(b) * side - before + MARGIN).floor() as i64 + after;
     let end = i64::try_from(count).ok()? - 1;
@@ -178,6 +184,7 @@ fn texels(
     };
     Some(match wrap {
         Wrap::Clamp => [range(first.clamp(0, end), last.clamp(0, end)), None],
+        // A whole repetition or more reads every texel.
         Wrap::Repeat if last - first >= end => [range(0, end), None],
         // A repeated range can run across the border and continue at the first texel.
         Wrap::Repeat => {

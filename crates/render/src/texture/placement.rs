@@ -67,6 +67,7 @@ impl Placement {
     #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
     pub(crate) fn set(&mut self, slot: usize, texels: [[f64; 3]; 2], steps: Option<Steps>) {
         for (axis, [a, b, c]) in texels.into_iter().enumerate() {
+            // Differences are computed in f64 and only then rounded.
             self.first[axis][slot] = a as f32;
             self.second[axis][slot] = (b - a) as f32;
             self.third[axis][slot] = (c - a) as f32;
@@ -75,9 +76,11 @@ impl Placement {
         }
         for (way, step) in steps.into_iter().flatten().enumerate() {
             for (axis, [a, b, c]) in texels.into_iter().enumerate() {
+                // (u - first) / w is (b - a) N1 + (c - a) N2, so its step is linear in their steps.
                 let step = (b - a) * step[1] + (c - a) * step[2];
                 self.steps[way][axis][slot] = step as f32;
             }
+            // N0 + N1 + N2 is 1 / w.
             self.by_w_steps[way][slot] = (step[0] + step[1] + step[2]) as f32;
         }
         self.known |= 1 << slot;
@@ -205,6 +208,7 @@ fn along(uvs: Uvs, texture: &Texture, axis: usize) -> [f64; 3] {
     let side = [size.width, size.height][axis] as f64;
     let own = each(uvs, |uv| uv[axis] * texture.scale[axis] + texture.offset[axis]);
     let least = own[0].min(own[1]).min(own[2]);
+    // All corners move by the same repetitions, so the triangle keeps its extent.
     let repetitions = match texture.wrap {
         Wrap::Repeat => least.floor(),
         Wrap::Clamp => 0.0,

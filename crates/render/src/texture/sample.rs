@@ -27,6 +27,7 @@ pub(crate) fn sample_as<T: Number>(
     decoding: Decoding,
 ) -> [T; 4] {
     let size = texture.picture.size();
+    // Without texels, the factors are 1 and change no colour.
     if size.area() == 0 {
         return [T::from_f64(1.0); 4];
     }
@@ -54,6 +55,7 @@ pub(crate) fn sample_as<T: Number>(
         Filter::Nearest => texel(whole(x), whole(y)),
         // Sampled at full size; the caller handles mipmaps.
         Filter::Bilinear | Filter::Trilinear | Filter::Anisotropic => {
+            // Texel centres are at halves, so the lower left neighbour is half a texel back.
             let (x, y) = (x - 0.5, y - 0.5);
             let (column, row) = (whole(x), whole(y));
             let (s, t) = (T::from_f64(x - x.floor()), T::from_f64(y - y.floor()));
@@ -94,6 +96,7 @@ pub(crate) fn linear_factors() -> &'static [f64; 256] {
 /// is exactly its value.
 #[inline(always)]
 pub(crate) fn brightness<R: Real>(Vec3([r, g, b]): Vec3<R>) -> R {
+    // Differences from green keep greys exact: both terms are 0 if r = g = b.
     g + (r - g) * g.lift(0.2126) + (b - g) * g.lift(0.0722)
 }
 

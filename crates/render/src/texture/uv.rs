@@ -14,6 +14,7 @@ pub(crate) fn uv([a, b, c]: Uvs, weights: DVec3) -> [f64; 2] {
     let between = |axis: usize| {
         let (low, high) = (a[axis].min(b[axis]).min(c[axis]), a[axis].max(b[axis]).max(c[axis]));
         let value = a[axis] + (b[axis] - a[axis]) * weights.y + (c[axis] - a[axis]) * weights.z;
+        // Rounded weights may leave the range of the corners.
         value.clamp(low, high)
     };
     [between(0), between(1)]

@@ -41,6 +41,7 @@ impl<S: Simd> Edges<S> for FloatEdges<S> {
 
     #[inline(always)]
     fn bounds(corners: Corners<S>, samples: [[i32; 2]; 2]) -> Boxes<S> {
+        // A box in subpixels, enlarged by the distance at which rounding may cover centres.
         let corners = each(corners, |[x, y]| [snapped(x), snapped(y)]);
         UsualEdges::bounds(corners, reach(Coverage::F32Edges, samples))
     }
@@ -52,6 +53,7 @@ impl<S: Simd> Edges<S> for FloatEdges<S> {
         [left, top, right, bottom]: Boxes<S>,
         [d0, d1, d2]: [f32x16<S>; 3],
     ) -> Self {
+        // Queues hold integers, so corners arrive as the bits of f32.
         let [p, q, r] = each(corners, |[x, y]| [x.bitcast::<f32x16<S>>(), y.bitcast()]);
         let area = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
         let one = f32x16::splat(simd, 1.0);
@@ -108,6 +110,7 @@ impl<S: Simd> Edges<S> for FloatEdges<S> {
         (lanes, [dx, dy], shift): Places<'_, S, Self::Shift>,
     ) -> f32x16<S> {
         let [more_x, more_y] = shift.copied().unwrap_or_default();
+        // The formula of `edge`, at positions that may differ from lane to lane.
         let x = of_lanes(self.start[0], lanes) + dx.to_float::<f32x16<S>>() + more_x;
         let y = of_lanes(self.start[1], lanes) + dy.to_float::<f32x16<S>>() + more_y;
         let [a, b, c] = self.lines[i];

@@ -38,6 +38,7 @@ impl<S: Simd> Edges<S> for UsualEdges<S> {
         let [y0, y1, y2] = each([p[1], q[1], r[1]], |y| (y - cy).to_float::<f32x16<S>>());
         let area = (x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0);
         let one = f32x16::splat(simd, 1.0);
+        // The sign makes edge functions positive inside for either winding.
         let sign = area.simd_lt(0.0).select(f32x16::splat(simd, -1.0), one);
         let edges = [
             edge([x1, y1], [x2, y2], sign),
@@ -67,6 +68,7 @@ impl<S: Simd> Edges<S> for UsualEdges<S> {
 
     #[inline(always)]
     fn shifts<const N: usize>(&self, sample_positions: &SamplePositions) -> [Self::Shift; N] {
+        // Steps are multiples of 256 and offsets are in 1/256 pixel, so the products are exact.
         let (mut shifts, [a, b]) = ([self.first; N], self.steps);
         for (sample, shift) in shifts.iter_mut().enumerate() {
             let [x, y] = sample_positions.shift::<N>(sample).map(|by| by as f32 / SUBPIXELS as f32);
@@ -116,6 +118,7 @@ fn edge<S: Simd>(
     sign: f32x16<S>,
 ) -> Edge<f32x16<S>> {
     let (a, b) = ((py - qy) * sign, (qx - px) * sign);
+    // The top-left rule: centres on a left or top edge are covered.
     let on_edge = a.simd_gt(0.0) | (a.simd_eq(0.0) & b.simd_gt(0.0));
     let (zero, one) = (f32x16::splat(px.simd, 0.0), f32x16::splat(px.simd, 1.0));
     Edge {

@@ -34,6 +34,7 @@ impl<S: Simd> WholeEdges<S> {
     /// Computes an edge function as in [`Edges::function`].
     #[inline(always)]
     fn edge(&self, i: usize, (lanes, [dx, dy], shift): Places<'_, S, [i32x16<S>; 3]>) -> i32x16<S> {
+        // Depth needs the edge function itself, without the bias of the top-left rule.
         let first = permute(self.first[i] + self.least[i], lanes);
         let [a, b] = [permute(self.steps[0][i], lanes), permute(self.steps[1][i], lanes)];
         let at = first + a * dx + b * dy;
@@ -79,6 +80,7 @@ impl<S: Simd> Edges<S> for WholeEdges<S> {
         for (sample, shift) in shifts.iter_mut().enumerate() {
             let [x, y] = sample_positions.shift::<N>(sample);
             for (i, shift) in shift.iter_mut().enumerate() {
+                // Steps are multiples of 256, so the steps by one subpixel are exact.
                 *shift = (a[i] >> 8) * x + (b[i] >> 8) * y;
             }
         }
@@ -92,6 +94,7 @@ impl<S: Simd> Edges<S> for WholeEdges<S> {
 
     #[inline(always)]
     fn covered(&self, [a, b, c]: Self::At) -> mask32x16<S> {
+        // The union is negative if any edge function is, so one comparison is enough.
         (a | b | c).simd_ge(0)
     }
 
@@ -107,6 +110,7 @@ impl<S: Simd> Edges<S> for WholeEdges<S> {
         let (low, high) = of_lanes(self.depth, lanes).widen();
         let to_second = doubles(self.to_second, lanes);
         let to_third = doubles(self.to_third, lanes);
+        // The same operations in the same order as in `medium`, for the same bits.
         let low = second[0] * to_second[0] + low + third[0] * to_third[0];
         let high = second[1] * to_second[1] + high + third[1] * to_third[1];
         low.narrow(high)
@@ -166,6 +170,7 @@ impl<S: Simd> Edges<S> for FineEdges<S> {
 
     #[inline(always)]
     fn first(&self) -> Self::At {
+        // The shift rounds down, which keeps the sign.
         each(self.first, |edge| edge >> FINE)
     }
 
@@ -207,6 +212,7 @@ impl<S: Simd> Edges<S> for FineEdges<S> {
         (lanes, [dx, dy], shift): Places<'_, S, Self::Shift>,
     ) -> f32x16<S> {
         let [a, b] = [permute(self.steps[0][i], lanes), permute(self.steps[1][i], lanes)];
+        // The steps belong to the quotients, so the shift undoes the division.
         let at = permute(self.first[i], lanes) + ((a * dx + b * dy) << FINE);
         let at = at.to_float::<f32x16<S>>();
         match shift {
@@ -235,6 +241,7 @@ fn whole_edges<S: Simd>(
     [left, top, ..]: Boxes<S>,
 ) -> ([Edge<i32x16<S>>; 3], i32x16<S>) {
     let (half, log2) = (grid.parts() / 2, grid.parts().trailing_zeros());
+    // Positions relative to the box keep all products within 32 bits.
     let (cx, cy) = ((left << log2) + half, (top << log2) + half);
     let [p, q, r] = each([p, q, r], |[x, y]| [x - cx, y - cy]);
     let area = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
@@ -254,6 +261,7 @@ fn whole_edge<S: Simd>(
     sign: i32x16<S>,
 ) -> Edge<i32x16<S>> {
     let (a, b) = ((py - qy) * sign, (qx - px) * sign);
+    // The top-left rule: centres on a left or top edge are covered.
     let on_edge = a.simd_gt(0) | (a.simd_eq(0) & b.simd_gt(0));
     let (zero, one) = (i32x16::splat(px.simd, 0), i32x16::splat(px.simd, 1));
     let least = on_edge.select(zero, one);

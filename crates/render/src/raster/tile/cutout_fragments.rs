@@ -56,6 +56,7 @@ impl<S: Simd> large::InFront<S> for List<'_> {
         depth: f32x16<S>,
     ) -> u64 {
         let Fragments { count, places, depths, edges } = &mut *self.fragments;
+        // The box has at most MOST pixels, so the remainder only saves bounds checks.
         let to = *count % (ROOM - 16);
         let mask = mask32x16::from_bitmask(simd, pixels);
         // Appends the pixels of both rows; compressing keeps only the lanes in front.
@@ -71,6 +72,7 @@ impl<S: Simd> large::InFront<S> for List<'_> {
             lower[i].compress(down).store_slice(&mut edges[i][below..below + 8]);
         }
         *count = to + pixels.count_ones() as usize;
+        // No pixel is drawn yet: `Fragments::put` does it after the alpha test.
         0
     }
 }

@@ -102,6 +102,7 @@ impl Visibility {
         if is_empty {
             return colors.fill(self.background);
         }
+        // 0 is an unknown colour: the primitive that is there will be shaded later.
         for (color, entry) in colors.iter_mut().zip(entries) {
             *color = if *entry == 0 { self.background } else { 0 };
         }
@@ -114,6 +115,7 @@ impl Visibility {
             return None;
         }
         let colors = &self.colors.0.as_chunks().0[block];
+        // Known colours have 255 in the top byte, unknown ones 0.
         let all = colors.iter().fold(u32::MAX, |all, color| all & color);
         Some((colors, all >> 24 != 0))
     }

@@ -97,6 +97,7 @@ impl Visibility {
         for (sample, test) in tests.iter().enumerate() {
             let shift = self.sample_positions.shift::<N>(sample);
             let [dx, dy] = in_pixels(shift);
+            // Corners move instead of the sample, and are rounded to pixels afterwards.
             let seen = each(corners, |[x, y]| [x - dx, y - dy]);
             let Some(rows) = ScanLines::new(seen, depths, number, self.bounds) else { continue };
             for block in rows.blocks() {
@@ -125,6 +126,7 @@ impl Visibility {
         let draw = &plan.draws[draw as usize];
         for (sample, test) in tests.iter().enumerate() {
             let shift = self.sample_positions.shift::<N>(sample);
+            // Points start in object space, so the offset of the picture is added.
             let shift = [shift[0] + plan.shift[0], shift[1] + plan.shift[1]];
             let own = number - start.number;
             points::cover(plan, draw, own, (self.bounds, shift), &mut |x, y, depth| {

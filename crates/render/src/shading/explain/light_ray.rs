@@ -42,6 +42,7 @@ fn ray<T: ShadingNumber>(
     let travels = DVec3::from_array(light.direction);
     let has_position = stage.effect.has_position;
     let way = DVec3::from_array(light.position) - position;
+    // A sun has a direction, but no position.
     let (to_light, distance) = if has_position {
         (way.normalize_or_zero(), Some(way.length() / world.unit))
     } else {

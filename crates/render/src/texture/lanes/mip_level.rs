@@ -195,6 +195,7 @@ impl<S: Simd> MipLevel<S> {
         if let Some(texels) = self.fetch_near::<2>(simd, sampler, (column, row), window) {
             return Footprint { texels, s, t };
         }
+        // The general path wraps columns and rows, and loads each pair of neighbours.
         let wrap = sampler.levels[0].wrap;
         let columns = beside(column, self.width, wrap);
         let [lower, upper] = beside(row, self.height, wrap);
@@ -213,6 +214,7 @@ impl<S: Simd> MipLevel<S> {
         }
         let more = N - 1;
         let left = column.reduce_min();
+        // A row of the window is one load of sixteen texels, including right neighbours.
         if (column - left).simd_ge(COLUMNS - more).any_true() {
             return Window::default();
         }
@@ -223,6 +225,7 @@ impl<S: Simd> MipLevel<S> {
         if N > 1 {
             far = far | column.simd_ge(self.width - more) | row.simd_ge(self.height - more);
         }
+        // Four rows take half of the permutations of eight.
         let rows = match (far.any_true(), high.simd_ge(4 - more).any_true()) {
             (true, _) => 0,
             (false, true) => 8,
@@ -246,6 +249,7 @@ impl<S: Simd> MipLevel<S> {
         let level = self.one.filter(|_| permutes(simd.level()) && rows > 0)?;
         let picture = &sampler.levels[level].picture;
         let Size { width, height } = picture.size();
+        // Column or row -1 is beyond the border, so no window holds it.
         let (from, above) = (usize::try_from(left).ok()?, usize::try_from(first).ok()?);
         // Rows of the picture run down, texture rows up.
         let at = height.checked_sub(above + 1)? * width + from;
@@ -285,6 +289,7 @@ impl<S: Simd> MipLevel<S> {
         row: i32x16<S>,
     ) -> [i32x16<S>; 2] {
         let places = self.places([left, row]);
+        // Wrapped or clamped at the border, a right neighbour is not the next texel in memory.
         let apart = !right.simd_eq(left + 1).to_bitmask() & 0xffff;
         if apart != 0 {
             return self.fetch_apart(simd, sampler, [&places, &self.places([right, row])]);
@@ -298,6 +303,7 @@ impl<S: Simd> MipLevel<S> {
         // Combined in registers: after sixteen separate stores, store forwarding would fail.
         let low = four(0).combine(four(2)).combine(four(4).combine(four(6)));
         let high = four(8).combine(four(10)).combine(four(12).combine(four(14)));
+        // Pairs lie left, right, left, right: one deinterleaving separates them.
         low.deinterleave(high).into()
     }
 
@@ -341,6 +347,7 @@ fn each_level<S: Simd>(
     if let Some(level) = one {
         return [lanes.set(first[level % LEVELS]), lanes.set(second[level % LEVELS])];
     }
+    // Sixteen levels fill one register, so a permutation looks them up.
     let first = permute(lanes.load(first, 0).bitcast(), numbers).bitcast();
     [first, permute(lanes.load(second, 0).bitcast(), numbers).bitcast()]
 }
@@ -358,11 +365,13 @@ fn from_rows<S: Simd, const N: usize, const ROWS: i32>(
     let mut at = at;
     for this in 0..ROWS {
         let sixteen = sixteen_from(simd, pixels, at);
+        // The next row up is earlier in memory. Beyond the picture, no lane reads the row.
         at = at.saturating_sub(width);
         // Every lane permutes every row; only lanes in this row keep the result.
         for (i, right) in (0..N).zip(0..) {
             let own = permute(sixteen, column + right);
             for (j, up) in (0..N).zip(0..) {
+                // A lane finds its upper texels one round after its lower ones.
                 texels[j][i] = row.simd_eq(this - up).select(own, texels[j][i]);
             }
         }
@@ -399,6 +408,7 @@ fn texel_of(pixels: &[[u8; 4]], place: i32) -> i32 {
 /// Reads a texel and the next one. Lanes without a pixel get arbitrary texels.
 #[inline(always)]
 fn two_texels_of(pixels: &[[u8; 4]], place: i32) -> [i32; 2] {
+    // A single texel has no pair; its neighbours wrap and are fetched separately.
     let Some(last) = pixels.len().checked_sub(2) else { return [0; 2] };
     // Clamping costs less than a branch.
     let place = (place.cast_unsigned() as usize).min(last);
