@@ -12,7 +12,7 @@ use marraztu_core::scene::{
 use super::common::{at, ball, cube, draw, edit, square};
 use super::figures::Figure;
 use super::oracle::{Eye, meet, unit};
-use super::shadows::{SIDE, Shade, floor, sun, tilted};
+use super::shadows::{SIDE, Shade, bulb, floor, sun, tilted};
 
 /// The default settings with each kind of shadow map.
 fn maps() -> impl Iterator<Item = Settings> {
@@ -116,6 +116,33 @@ fn case_78_a_convex_edge_shades_few_pixels_of_its_steep_side() {
         naive: None,
         ours: shaded as f64,
         bound: 32.0,
+        unit: "pixels",
+    }
+    .hold();
+}
+
+#[test]
+fn case_78_a_lamp_sees_casters_in_the_corners_of_its_cube_map() {
+    // The wall is nearest to the lamp. Along the axis of the map's picture, the cubes in its corners
+    // are nearer than the wall, although their distance from the lamp is larger.
+    let wall = (square(), at(150.0, 0.0, 0.0, 0.0));
+    let corners = [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]];
+    let cubes = corners.map(|[x, y]| (cube(), at(4.0, 25.0 * x, 25.0 * y, 15.0)));
+    let lamp = bulb(DVec3::new(0.0, 0.0, 40.0));
+    let models = std::iter::once(wall).chain(cubes).collect();
+    let room = Shade { models, light: lamp, eye: DVec3::Z * 400.0 };
+    let exact = room.draw_by(&Settings::default()).shaded;
+    let settings = Settings { shadow_method: ShadowMethod::Map4096, ..Settings::default() };
+    let own = room.draw_by(&settings).shaded;
+    Figure {
+        case: 78,
+        what: "pixels that a cube map of 4096 decides otherwise than rays",
+        naive: Some((
+            "a near plane just before the wall",
+            exact.iter().filter(|shaded| **shaded).count() as f64,
+        )),
+        ours: own.iter().zip(&exact).filter(|(a, b)| a != b).count() as f64,
+        bound: 24.0,
         unit: "pixels",
     }
     .hold();

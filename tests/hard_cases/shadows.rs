@@ -27,7 +27,7 @@ pub(crate) fn sun(towards: DVec3) -> LightKind {
     LightKind::Sun { direction: Tracked::new(-unit(towards)) }
 }
 
-fn bulb(at: DVec3) -> LightKind {
+pub(crate) fn bulb(at: DVec3) -> LightKind {
     LightKind::Bulb { position: Tracked::new(at), orbit: Orbit::default() }
 }
 
