@@ -144,6 +144,8 @@ pub(crate) struct FineEdges<S: Simd> {
     first: [i32x16<S>; 3],
     /// The steps of the quotients for one pixel to the right and one pixel down.
     steps: [[i32x16<S>; 3]; 2],
+    /// The smallest covered values, needed for depth and colours.
+    least: [i32x16<S>; 3],
     gradients: [f32x16<S>; 3],
 }
 
@@ -164,6 +166,7 @@ impl<S: Simd> Edges<S> for FineEdges<S> {
         Self {
             first: each(edges, |edge| edge.value),
             steps: [each(edges, |edge| edge.a), each(edges, |edge| edge.b)],
+            least: each(edges, |edge| edge.least),
             gradients: [d0, (d1 - d0) / area, (d2 - d0) / area],
         }
     }
@@ -213,7 +216,8 @@ impl<S: Simd> Edges<S> for FineEdges<S> {
     ) -> f32x16<S> {
         let [a, b] = [permute(self.steps[0][i], lanes), permute(self.steps[1][i], lanes)];
         // The steps belong to the quotients, so the shift undoes the division.
-        let at = permute(self.first[i], lanes) + ((a * dx + b * dy) << FINE);
+        let first = permute(self.first[i] + self.least[i], lanes);
+        let at = first + ((a * dx + b * dy) << FINE);
         let at = at.to_float::<f32x16<S>>();
         match shift {
             Some((_, gain)) => at + of_lanes(gain[i], lanes),
@@ -266,4 +270,51 @@ fn whole_edge<S: Simd>(
     let (zero, one) = (i32x16::splat(px.simd, 0), i32x16::splat(px.simd, 1));
     let least = on_edge.select(zero, one);
     Edge { value: zero - (a * px + b * py) - least, least, a, b }
+}
+
+#[cfg(test)]
+#[expect(clippy::cast_precision_loss, reason = "the nearest f32 is meant")]
+mod tests {
+    use super::*;
+    use crate::simd::{UP_TO_SIXTEEN, dispatch};
+    use fearless_simd::Level;
+    use marraztu_core::base::rng::Rng;
+    use std::array::from_fn;
+
+    /// Compares the edge functions of sixteen triangles of up to 4 x 4 pixels with their definition.
+    #[inline(always)]
+    fn compare<S: Simd, E: Edges<S>>(simd: S, rng: &mut Rng) {
+        let parts = E::GRID.parts();
+        let triangles: [[[i32; 2]; 3]; 16] =
+            from_fn(|_| from_fn(|_| from_fn(|_| rng.between(0, 4 * parts - 1))));
+        let corners: Corners<S> = from_fn(|corner| {
+            from_fn(|axis| i32x16::from_slice(simd, &triangles.map(|it| it[corner][axis])))
+        });
+        let boxes = E::bounds(corners, [[0; 2]; 2]);
+        let edges = E::new(simd, corners, boxes, [f32x16::splat(simd, 0.5); 3]);
+        let (lanes, one) = (i32x16::from_slice(simd, &UP_TO_SIXTEEN), i32x16::splat(simd, 1));
+        for i in 0..3 {
+            let found = edges.function(i, (lanes, [one, one], None));
+            for (lane, corners) in triangles.iter().enumerate() {
+                let [x, y] =
+                    [boxes[0][lane], boxes[1][lane]].map(|first| (first + 1) * parts + parts / 2);
+                let [[px, py], [qx, qy], [rx, ry]] = from_fn(|j| corners[(i + 1 + j) % 3]);
+                let area = (qx - px) * (ry - py) - (qy - py) * (rx - px);
+                let value = (py - qy) * (x - px) + (qx - px) * (y - py);
+                let expected = if area < 0 { -value } else { value } as f32;
+                assert_eq!(found[lane], expected, "edge {i} of {corners:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn depths_and_colours_take_edge_functions_without_the_bias_of_the_top_left_rule() {
+        let mut rng = Rng::new(7);
+        for _ in 0..100 {
+            dispatch!(Level::new(), simd => {
+                compare::<_, WholeEdges<_>>(simd, &mut rng);
+                compare::<_, FineEdges<_>>(simd, &mut rng);
+            });
+        }
+    }
 }
