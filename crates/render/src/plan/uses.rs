@@ -183,7 +183,7 @@ impl Notes {
         }
     }
 
-    /// Returns all of them: first the whole frame's, then item by item.
+    /// Returns all of them, by effect and then by item.
     pub(super) fn into_uses(self) -> Vec<EffectUse> {
         self.uses.into_values().collect()
     }

@@ -244,7 +244,6 @@ impl Renderer {
         let tiles = 0..usize::try_from(columns * rows).expect("not negative");
         for tile in tiles.filter(|tile| !self.frame.is_empty(*tile)) {
             tile_seen.draw(self.level, plan, &self.frame, (tile, bounds_of(tile, plan.size)));
-            // Stops early once the caller has its answer.
             for block in 0..BLOCK_PIXELS {
                 if !tile_seen.shows(block) {
                     continue;
@@ -256,6 +255,7 @@ impl Renderer {
                         flow = each(self, plan, y * plan.size.width + x, nearest, words);
                     }
                 });
+                // The caller has its answer.
                 if flow.is_break() {
                     return;
                 }

@@ -14,7 +14,7 @@ use glam::{DMat4, DVec3};
 use super::coverage::{Grid, SUBPIXELS, Snapped};
 use crate::frame::Viewport;
 
-/// The guard band: the largest distance of a coordinate from the picture's centre, in pixels.
+/// The guard band: the largest coordinate of a vertex that needs no clipping, in pixels.
 const GUARD: f64 = 1_048_576.0;
 
 /// The rounding constant: a number below 2^51 plus this has its nearest integer in the lowest bits.

@@ -88,8 +88,7 @@ impl<T: Number> TangentRows<T> {
     }
 }
 
-/// Tilts the interpolated normals of a batch. `new` tells whether the triangles differ from the
-/// last batch's.
+/// Tilts the interpolated normals of a batch.
 pub(super) fn bend<T: ShadingNumber>(
     group: &Group<'_, T>,
     points: Points<'_, T>,

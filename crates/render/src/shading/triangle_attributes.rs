@@ -474,7 +474,7 @@ pub(super) struct Edges<S: Simd> {
     /// The coefficients a, b and c of the second and third edge function, as in
     /// [`TriangleAttributes::edges`].
     pub(super) functions: [[i32x16<S>; 3]; 2],
-    /// The doubled area: negative for triangles that run clockwise on the screen. Meaningless for
+    /// The doubled area: positive for triangles that run clockwise on the screen. Meaningless for
     /// clipped or wide triangles.
     pub(super) area: i32x16<S>,
     /// The mask of clipped triangles.

@@ -25,8 +25,8 @@ pub trait Real:
     /// Repeats a constant in as many lanes as `self` has.
     #[must_use]
     fn lift(self, constant: f64) -> Self;
-    /// Computes 1 / the square root. Returns 0 if `self` is not positive, infinite, NaN or
-    /// subnormal.
+    /// Computes 1 / the square root. Returns 0 if `self` is not positive, infinite or NaN, or a
+    /// subnormal f32.
     #[must_use]
     fn reciprocal_root(self) -> Self;
     /// Returns `yes` if `self` is more than `than`; else, or if either is NaN, `no`.
