@@ -14,7 +14,7 @@ use memchr::memmem;
 use super::error::{LoadError, shown};
 use super::locate::Locator;
 use super::mtl::map_names;
-use super::obj::lines::Lines;
+use super::obj::lines::{Lines, unmarked};
 use super::packed::{model_name, unpacked};
 use super::progress::Progress;
 use super::read::{MOST_WORDS, read, utf_8};
@@ -40,32 +40,33 @@ pub fn companions(path: &Path) -> Result<Vec<Companion>, LoadError> {
     let folder = path.parent().unwrap_or(Path::new(""));
     let folders = vec![folder.to_owned()];
     let mut locator = Locator::default();
+    // Files of one name may lie in several folders.
     let mut found = BTreeMap::new();
     for names in libraries(&utf_8(text)) {
         let all = locator.locate_all(folder, &names, ".mtl").into_iter();
-        found.extend(all.map(|(name, path)| (name, (path, folders.clone()))));
+        found.extend(all.map(|named| (named, folders.clone())));
     }
     // Loading falls back to the MTL file with the model's name.
     let own = format!("{}.mtl", model_name(&file));
     let own_path = locator.locate(folder, &own);
-    found.entry(own).or_insert((own_path, folders));
-    let libraries: Vec<PathBuf> = found.values().filter_map(|(path, _)| path.clone()).collect();
+    found.entry((own, own_path)).or_insert(folders);
+    let libraries: Vec<PathBuf> = found.keys().filter_map(|(_, path)| path.clone()).collect();
     for library in libraries {
         // An unreadable MTL file is a finding of the model, which has no further files then.
         let Ok(text) = read(&library, MOST_WORDS, &Progress::new()) else { continue };
         let folders = [library.parent().unwrap_or(Path::new("")), folder];
         for name in map_names(&utf_8(text)) {
             let path = folders.into_iter().find_map(|folder| locator.locate(folder, &name));
-            found.insert(name, (path, folders.map(Path::to_owned).to_vec()));
+            found.insert((name, path), folders.map(Path::to_owned).to_vec());
         }
     }
-    let companion = |(name, (path, folders))| Companion { name, path, folders };
+    let companion = |((name, path), folders)| Companion { name, path, folders };
     Ok(found.into_iter().map(companion).collect())
 }
 
 /// Returns the names in `mtllib` statements, once each.
 fn libraries(text: &[u8]) -> Vec<String> {
-    let mut names = Vec::new();
+    let (text, mut names) = (unmarked(text), Vec::new());
     for at in memmem::find_iter(text, b"mtllib") {
         // A statement starts its line, possibly after blanks.
         let begin = text[..at].iter().rposition(|byte| !matches!(byte, b' ' | b'\t'));
@@ -110,6 +111,21 @@ mod tests {
         ];
         assert_eq!(listed, expected);
         assert!(companions(&at("absent.obj")).is_err());
+    }
+
+    #[test]
+    fn a_byte_order_mark_hides_no_statement_and_files_of_one_name_are_all_listed() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        std::fs::write(at("m.obj"), "\u{feff}mtllib a/a.mtl\nmtllib b/b.mtl\n").unwrap();
+        for name in ["a", "b"] {
+            std::fs::create_dir(at(name)).unwrap();
+            std::fs::write(at(&format!("{name}/{name}.mtl")), "newmtl m\nmap_Kd t.png\n").unwrap();
+            std::fs::write(at(&format!("{name}/t.png")), "").unwrap();
+        }
+        let listed = companions(&at("m.obj")).unwrap();
+        let found: Vec<_> = listed.into_iter().filter_map(|it| it.path).collect();
+        assert_eq!(found, ["a/a.mtl", "b/b.mtl", "a/t.png", "b/t.png"].map(at));
     }
 
     #[test]

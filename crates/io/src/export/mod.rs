@@ -23,7 +23,7 @@ use marraztu_core::scene::{Scene, View};
 
 /// The first line of exported text files. A companion file that begins with it was written by this
 /// program and may be replaced.
-const SIGNATURE: &str = "# exported by Marraztu\n";
+pub(crate) const SIGNATURE: &str = "# exported by Marraztu\n";
 
 /// The comment of exported textures, which may be replaced likewise.
 const MARK: &str = "exported by Marraztu";

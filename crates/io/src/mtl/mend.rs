@@ -81,7 +81,7 @@ impl Statements {
                 || ambient.iter().any(|x| *x > 1.0)
         };
         match self.ambient {
-            Some(ambient) if !nonsense(ambient) => clamped(ambient, note),
+            Some(ambient) if self.is_own || !nonsense(ambient) => clamped(ambient, note),
             given => {
                 if given != Some(shade) {
                     note(FindingKind::MendedAmbient);
@@ -116,7 +116,7 @@ impl Statements {
         note: &mut dyn FnMut(FindingKind),
     ) -> ([f64; 3], f64) {
         match self.exponent {
-            Some(exponent) if exponent >= 1.0 => (specular, exponent),
+            Some(exponent) if self.is_own || exponent >= 1.0 => (specular, exponent.max(0.0)),
             Some(exponent) if exponent > 0.0 => {
                 note(FindingKind::MendedExponent);
                 (specular, 1.0)

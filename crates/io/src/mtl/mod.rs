@@ -17,6 +17,7 @@ use self::map::{Map, map};
 use self::mend::scale_bytes;
 use self::normal_map::shows_normals;
 use super::error::{LoadError, short_name, shown};
+use super::export::SIGNATURE;
 use super::findings::{Finding, FindingKind, Findings, joined};
 use super::locate::Locator;
 use super::obj::lines::{Line, Lines, Oddity, decode, excerpt, words};
@@ -75,6 +76,8 @@ struct Origin {
 struct Statements {
     name: String,
     line: u32,
+    /// Whether this program has written the file: its values are meant as they are.
+    is_own: bool,
     ambient: Option<[f64; 3]>,
     diffuse: Option<[f64; 3]>,
     specular: Option<[f64; 3]>,
@@ -302,6 +305,7 @@ impl<'a> Library<'a> {
 
 fn read_statements(bytes: &[u8], findings: &mut Findings) -> Vec<Statements> {
     let mut list: Vec<Statements> = Vec::new();
+    let is_own = bytes.starts_with(SIGNATURE.as_bytes());
     for line in Lines::new(bytes) {
         let (keyword, _) = line.statement();
         if line.oddity == Some(Oddity::NotContinued) {
@@ -309,7 +313,7 @@ fn read_statements(bytes: &[u8], findings: &mut Findings) -> Vec<Statements> {
         }
         if keyword == b"newmtl" {
             let (name, line) = (line.name(), line.number);
-            list.push(Statements { name, line, ..Statements::default() });
+            list.push(Statements { name, line, is_own, ..Statements::default() });
             continue;
         }
         if keyword.starts_with(b"#") {
@@ -422,6 +426,17 @@ mod tests {
         library.findings.push(findings);
         let (mut materials, findings) = library.finish(&BTreeSet::from([0]));
         (materials.remove(0), findings.into_iter().map(|finding| finding.kind).collect())
+    }
+
+    #[test]
+    fn values_of_our_own_exports_are_kept_where_those_of_others_are_mended() {
+        let text = "newmtl a\nKa 1 1 1\nKd 0 0 0\nKs .4 .4 .4\nNs 0.5\n";
+        let (other, findings) = read(text);
+        assert_ne!((other.material.ambient, other.material.exponent), ([1.0; 3], 0.5));
+        assert!(!findings.is_empty());
+        let (own, findings) = read(&format!("{SIGNATURE}{text}"));
+        assert_eq!((own.material.ambient, own.material.exponent), ([1.0; 3], 0.5));
+        assert_eq!(findings, []);
     }
 
     #[test]

@@ -211,7 +211,7 @@ impl Line<'_> {
 }
 
 /// Removes a byte-order mark at the beginning of a file.
-pub(super) fn unmarked(bytes: &[u8]) -> &[u8] {
+pub(crate) fn unmarked(bytes: &[u8]) -> &[u8] {
     bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes)
 }
 
