@@ -123,8 +123,8 @@ fn case_78_a_convex_edge_shades_few_pixels_of_its_steep_side() {
 
 #[test]
 fn case_78_a_lamp_sees_casters_in_the_corners_of_its_cube_map() {
-    // The wall is nearest to the lamp. Along the axis of the map's picture, the cubes in its corners
-    // are nearer than the wall, although their distance from the lamp is larger.
+    // The wall is nearest to the lamp. Along the axis of the map, the cubes in its corners are
+    // nearer than the wall, although their distance from the lamp is larger.
     let wall = (square(), at(150.0, 0.0, 0.0, 0.0));
     let corners = [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]];
     let cubes = corners.map(|[x, y]| (cube(), at(4.0, 25.0 * x, 25.0 * y, 15.0)));

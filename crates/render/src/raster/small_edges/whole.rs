@@ -281,7 +281,7 @@ mod tests {
     use marraztu_core::base::rng::Rng;
     use std::array::from_fn;
 
-    /// Compares the edge functions of sixteen triangles of up to 4 x 4 pixels with their definition.
+    /// Compares edge functions of sixteen triangles of up to 4 x 4 pixels with their definition.
     #[inline(always)]
     fn compare<S: Simd, E: Edges<S>>(simd: S, rng: &mut Rng) {
         let parts = E::GRID.parts();
