@@ -16,6 +16,7 @@ use serde_json::{Map, Value, json};
 
 use super::failure::Failure;
 use super::layers::{LayerFile, LayerOptions, OutputLayer};
+use super::page::parts_between;
 
 /// The usual name of the file.
 pub(crate) const CAMERAS: &str = "cameras.json";
@@ -61,8 +62,8 @@ impl CameraFrame {
     ) -> Self {
         let camera = PictureCamera::of(shot);
         let shown = |file: &LayerFile| {
-            let path = file.path.strip_prefix(folder).unwrap_or(&file.path);
-            path.to_string_lossy().replace('\\', "/")
+            let parts = parts_between(&folder.join(CAMERAS), &file.path);
+            parts.iter().map(|part| part.to_string_lossy()).collect::<Vec<_>>().join("/")
         };
         let layers = files.iter().flat_map(|file| {
             let path = shown(file);

@@ -43,11 +43,8 @@ pub(super) fn write_page(path: &Path, page: &str) -> Result<(), SaveError> {
 
 /// Returns the URL of a file, relative to a page.
 pub(super) fn relative_url(page: &Path, file: &Path) -> String {
-    let (mut from, to) = (components(page), components(file));
-    from.pop();
-    let common = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
-    let mut url = "../".repeat(from.len() - common);
-    for (i, part) in to[common..].iter().enumerate() {
+    let mut url = String::new();
+    for (i, part) in parts_between(page, file).iter().enumerate() {
         url += if i == 0 { "" } else { "/" };
         for byte in part.to_string_lossy().bytes() {
             // Writing to a string cannot fail.
@@ -60,6 +57,15 @@ pub(super) fn relative_url(page: &Path, file: &Path) -> String {
         }
     }
     url
+}
+
+/// Returns the parts of the path from the folder of one file to another file.
+pub(super) fn parts_between(from: &Path, to: &Path) -> Vec<OsString> {
+    let (mut from, mut to) = (components(from), components(to));
+    from.pop();
+    let common = from.iter().zip(&to).take_while(|(a, b)| a == b).count();
+    let up = std::iter::repeat_n(OsString::from(".."), from.len() - common);
+    up.chain(to.drain(common..)).collect()
 }
 
 /// Returns the parts of an absolute path, without the root and without "..".

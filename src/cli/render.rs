@@ -7,7 +7,7 @@ use marraztu::picture_file::draw_into;
 use marraztu_core::accuracy::{AccuracyPreset, Settings, Shot};
 use marraztu_core::base::image::Size;
 use marraztu_core::edit::{framing, items, lighting};
-use marraztu_core::scene::{CameraId, Command, Fill, Light, Object, Pose};
+use marraztu_core::scene::{CameraId, Command, Fill, Item, Light, Object, Pose, Projection};
 use marraztu_io::{self as io, Progress};
 use marraztu_lab::dial::{Dial, Figures, Step};
 use marraztu_lab::report::brief;
@@ -265,8 +265,36 @@ pub(crate) enum Aim {
     Options,
     /// Everything visible is framed from these degrees to the right of the front, and up.
     From([f64; 2]),
-    /// A position with axes, and degrees to each side across the shorter side, if known.
-    Pose(Pose, Option<f64>),
+    /// A position with axes, and a lens.
+    Pose(Pose, PoseLens),
+}
+
+/// The lens of a camera that is given by its pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum PoseLens {
+    /// The lens of the selected camera.
+    Selected,
+    /// Degrees to each side, across the shorter side of the picture.
+    Shorter(f64),
+    /// Degrees to the left and to the right, for pictures of any shape.
+    Across(f64),
+    /// An orthographic projection, with half of the shorter side in units.
+    Parallel(f64),
+}
+
+impl Aim {
+    /// Returns the aim for a picture of this size.
+    #[expect(clippy::cast_precision_loss, reason = "at most 16,384 pixels")]
+    pub(crate) fn at(self, size: Size) -> Self {
+        match self {
+            Self::Pose(pose, PoseLens::Across(degrees)) => {
+                let sides = (size.height as f64 / size.width as f64).min(1.0);
+                let tangent = libm::tan(degrees.to_radians()) * sides;
+                Self::Pose(pose, PoseLens::Shorter(libm::atan(tangent).to_degrees()))
+            }
+            Self::Options | Self::From(_) | Self::Pose(..) => self,
+        }
+    }
 }
 
 /// Applies the options for the view.
@@ -277,11 +305,13 @@ pub(super) fn look(stage: &mut Stage, seeing: &Seeing, aim: &Aim) -> Result<(), 
                 --camera",
         ));
     }
+    // Time moves what the camera frames.
+    stage.view.time = seeing.time.unwrap_or(stage.view.time);
     // The camera comes first: lights and exposure depend on the view.
     match aim {
         Aim::Options => aim_by_options(stage, seeing)?,
         Aim::From(from) => frame(stage, *from)?,
-        Aim::Pose(pose, half_angle) => place_camera(stage, *pose, *half_angle)?,
+        Aim::Pose(pose, lens) => place_camera(stage, *pose, *lens)?,
     }
     if let Some(Slots(slots)) = &seeing.lights {
         check_slots(stage, slots, |_| true, "")?;
@@ -303,7 +333,6 @@ pub(super) fn look(stage: &mut Stage, seeing: &Seeing, aim: &Aim) -> Result<(), 
     let view = &mut stage.view;
     view.projection = seeing.projection.unwrap_or(view.projection);
     view.normals = seeing.normals.unwrap_or(view.normals);
-    view.time = seeing.time.unwrap_or(view.time);
     if seeing.edges {
         view.fill = Fill::Edges;
     }
@@ -357,11 +386,22 @@ fn frame(stage: &mut Stage, from: [f64; 2]) -> Result<(), Failure> {
 
 /// Places the camera. The lights of models without a scene are those of the default view, so they
 /// are the same for all positions, except for the camera's own spot.
-fn place_camera(stage: &mut Stage, pose: Pose, half_angle: Option<f64>) -> Result<(), Failure> {
+fn place_camera(stage: &mut Stage, pose: Pose, lens: PoseLens) -> Result<(), Failure> {
     if stage.models_alone {
         frame(stage, framing::MODELS_FROM)?;
     }
-    stage.change(framing::from_pose(&stage.scene, &stage.view, pose, half_angle))
+    let half_angle = match lens {
+        PoseLens::Selected | PoseLens::Parallel(_) => None,
+        PoseLens::Shorter(degrees) | PoseLens::Across(degrees) => Some(degrees),
+    };
+    stage.change(framing::from_pose(&stage.scene, &stage.view, pose, half_angle))?;
+    if let PoseLens::Parallel(half_size) = lens {
+        stage.view.projection = Projection::Orthographic;
+        let mut camera = stage.scene.selected_camera(&stage.view).clone();
+        camera.lens.half_size = half_size;
+        stage.change(Command::Replace(Item::Camera(stage.view.camera, Box::new(camera))))?;
+    }
+    Ok(())
 }
 
 /// Checks that each of these slots has a light that `suits`.

@@ -81,9 +81,10 @@ pub(super) fn views(arguments: &Views) -> Result<(), Failure> {
     let mut cells = Vec::new();
     for view in &views {
         let mut stage = stage.clone();
-        look(&mut stage, seeing, &view.aim)?;
+        let size = view.size.unwrap_or(*size);
+        look(&mut stage, seeing, &view.aim.at(size))?;
         stage.settings = accuracy.of_file(&stage.settings);
-        let shot = stage.shot(view.size.unwrap_or(*size));
+        let shot = stage.shot(size);
         let picture = renderer.render(&plan_frame(&shot)).clone();
         cells.push(SheetCell { picture, label: view.name.clone() });
     }

@@ -106,6 +106,35 @@ fn each_layer_is_a_file_and_the_cameras_draw_the_same_pictures_again() {
 }
 
 #[test]
+fn cameras_name_layers_in_other_folders_relative_to_their_file() {
+    let folder = folder();
+    let out = ["--out", "out/{layer}/{stem}-{view}.png"];
+    ends_with(0, folder.path(), &layers(&out));
+    let cameras = json(&folder.path().join("out/color/cameras.json"));
+    assert_eq!(cameras["frames"][0]["file_path"], "cam-0.png");
+    assert_eq!(cameras["frames"][0]["depth_file_path"], "../depth/cam-0.png");
+    assert_eq!(cameras["frames"][0]["mask_path"], "../mask/cam-0.png");
+}
+
+#[test]
+fn an_orthographic_camera_is_drawn_again_from_its_file_and_rejected_by_bop_and_nerf() {
+    let folder = folder();
+    let base = ["batch", "models/cam.obj", "--size", "64x48", "--samples", "1"];
+    let first = ["--views", "front", "--projection", "orthographic", "--layers", "color"];
+    ends_with(0, folder.path(), &[&base[..], &first, &["--out", "a.png"]].concat());
+    let again = ["--views", "cameras.json", "--out", "b.png"];
+    ends_with(0, folder.path(), &[&base[..], &again].concat());
+    // The lights of the first picture are placed for its own view.
+    let compare = ["compare", "a.png", "b.png", "--max", "8"];
+    ends_with(0, folder.path(), &compare);
+    for kind in ["bop", "nerf"] {
+        let set = ["--dataset", kind, "--out", "set", "--projection", "orthographic"];
+        let (_, err) = ends_with(1, folder.path(), &[&base[..], &set].concat());
+        assert!(err.contains("in perspective alone"), "{err}");
+    }
+}
+
+#[test]
 fn layers_are_resumed_and_divided_into_parts_with_the_same_bytes() {
     let folder = folder();
     let at = |name: &str| folder.path().join(name);

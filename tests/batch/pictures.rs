@@ -93,6 +93,72 @@ fn an_output_never_replaces_an_input_or_a_file_that_is_no_picture() {
 }
 
 #[test]
+fn a_batch_replaces_no_texture_of_another_model_in_its_list() {
+    let folder = folder();
+    let texture = folder.path().join("models/square.ppm");
+    let before = std::fs::read(&texture).unwrap();
+    std::fs::copy(folder.path().join("models/cam.obj"), folder.path().join("square.obj")).unwrap();
+    let arguments =
+        ["batch", "models/square.obj", "square.obj", "--out", "models/{stem}{index}.ppm"];
+    std::fs::rename(&texture, folder.path().join("models/square1.ppm")).unwrap();
+    let mtl = "newmtl a\nKd 1 1 1\nmap_Kd square1.ppm\n";
+    std::fs::write(folder.path().join("models/square.mtl"), mtl).unwrap();
+    let texture = folder.path().join("models/square1.ppm");
+    let (_, err) = ends_with(1, folder.path(), &[&arguments[..], &SMALL].concat());
+    assert!(err.contains("this file is an input"), "{err}");
+    assert_eq!(std::fs::read(texture).unwrap(), before);
+}
+
+#[test]
+fn an_angle_without_a_size_is_horizontal_in_pictures_of_any_shape() {
+    let folder = folder();
+    // At distance 2, half of the view is 2 tan(0.5) = 1.09 wide: the square has 200 / 2.18 pixels.
+    let json = r#"{"camera_angle_x": 1.0, "frames": [
+        {"transform_matrix": [[1,0,0,0.5],[0,1,0,0.5],[0,0,1,2]]}]}"#;
+    std::fs::write(folder.path().join("cameras.json"), json).unwrap();
+    let views = ["--views", "cameras.json", "--out", "a.png", "--samples", "1"];
+    let arguments = ["batch", "models/square.obj", "--size", "200x100"];
+    ends_with(0, folder.path(), &[&arguments[..], &views].concat());
+    let picture = io::load_picture(&folder.path().join("a.png")).unwrap();
+    let row = (0..200).filter(|x| picture.pixel(*x, 50) != picture.pixel(0, 50)).count();
+    assert!((91..=92).contains(&row), "{row}");
+}
+
+#[test]
+fn a_wide_lens_keeps_what_is_near_along_its_axis_and_far_to_the_side() {
+    let folder = folder();
+    // The square is 0.8 in front of the camera, and more than 2 to its right.
+    let json = r#"{"camera_angle_x": 2.9, "frames": [
+        {"transform_matrix": [[1,0,0,-2],[0,1,0,0.5],[0,0,1,0.8]]}]}"#;
+    std::fs::write(folder.path().join("cameras.json"), json).unwrap();
+    let views = ["--views", "cameras.json", "--out", "a.png", "--samples", "1"];
+    let arguments = ["batch", "models/square.obj", "--size", "200"];
+    ends_with(0, folder.path(), &[&arguments[..], &views].concat());
+    let picture = io::load_picture(&folder.path().join("a.png")).unwrap();
+    assert!(picture.pixels().iter().any(|pixel| *pixel != picture.pixel(0, 0)));
+}
+
+#[test]
+fn a_batch_frames_what_turns_at_the_time_of_the_picture() {
+    let folder = folder();
+    // After two seconds, the square is a quarter of a turn further around the origin.
+    let square = "v 50 0 0\nv 50 1 0\nv 50 1 1\nv 50 0 1\nf 1 2 3 4\n";
+    std::fs::write(folder.path().join("far.obj"), square).unwrap();
+    let scene = r#"(version: 1, next_id: 9, objects: [(id: 1, name: "a", sides: Two,
+        model: File(path: "far.obj"), spin: (axes: (false, true, false), speed: 45.0),
+        placement: ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0),
+            (0.0, 0.0, 0.0, 1.0)))],
+        cameras: [(id: 2, name: "c", eye: (0.0, 0.0, 1000.0))],
+        lights: [(id: 3, name: "ambient", slot: 0, kind: Ambient)],
+        view: (object: Some(1), camera: 2, light: Some(3), subject: Object, marks: false))"#;
+    std::fs::write(folder.path().join("s.marraztu"), scene).unwrap();
+    let arguments = ["batch", "s.marraztu", "--views", "front", "--time", "2", "--out", "a.png"];
+    ends_with(0, folder.path(), &[&arguments[..], &SMALL].concat());
+    let picture = io::load_picture(&folder.path().join("a.png")).unwrap();
+    assert!(picture.pixels().iter().any(|pixel| *pixel != picture.pixel(0, 0)));
+}
+
+#[test]
 fn cameras_of_a_file_place_the_camera_and_the_size() {
     let folder = folder();
     let json = r#"{"w": 48, "h": 32, "fl_x": 40, "frames": [

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use glam::{DMat3, DMat4};
 use marraztu_core::accuracy::Shot;
 use marraztu_core::base::image::Size;
-use marraztu_core::scene::{Command, Item, ObjectId};
+use marraztu_core::scene::{Command, Item, ObjectId, Projection};
 use marraztu_io::{self as io, LayerKind, LayerNumbers, LayerPicture, PngNumbers};
 use marraztu_render::{AxesConvention, Layer, LayerSet, NormalSpace, PictureCamera, Renderer};
 use serde_json::{Value, json};
@@ -49,6 +49,17 @@ impl Dataset {
             Self::Nerf => &[("layers", "color,depth,mask")],
             Self::Bop => &[("layers", "color,depth")],
             Self::Coco => &[("layers", "color,object"), ("ids", "rgb")],
+        }
+    }
+
+    /// Checks that the data set can describe cameras of this projection.
+    pub(super) fn check_projection(self, projection: Projection) -> Result<(), Fault> {
+        match (self, projection) {
+            (Self::Nerf | Self::Bop, Projection::Orthographic) => Err(Fault::Input(
+                "NeRF and BOP have cameras in perspective alone: add --projection perspective"
+                    .to_owned(),
+            )),
+            (Self::Coco, _) | (_, Projection::Perspective) => Ok(()),
         }
     }
 

@@ -20,7 +20,7 @@ use super::jobs::Job;
 use crate::cli::stage::is_scene;
 
 /// The version of the stamp's content.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// The hashes of a model.
 #[derive(Clone, Debug)]
@@ -96,7 +96,7 @@ impl Stamper {
 }
 
 /// Returns the names and files that a model or scene refers to. `None` if it cannot be read.
-fn companions(path: &Path) -> Option<Vec<(String, Option<PathBuf>)>> {
+pub(super) fn companions(path: &Path) -> Option<Vec<(String, Option<PathBuf>)>> {
     if !is_scene(path) {
         let companions = io::companions(path).ok()?;
         return Some(companions.into_iter().map(|it| (it.name, it.path)).collect());

@@ -12,6 +12,7 @@ use marraztu_io::{self as io, Sources};
 
 use super::Batch;
 use super::dataset::Dataset;
+use super::digest::companions;
 use super::list::{self, Entry, expanded, read_list};
 use super::options::{OptionParser, OptionTexts, Parsed, Value, WrongOption};
 use super::shard::Shard;
@@ -128,6 +129,7 @@ impl Jobs {
         }
         let jobs = jobs_of(&rows)?;
         check_outputs(&jobs, arguments)?;
+        check_inputs(&jobs, &rows)?;
         let all = jobs.len();
         let cameras = reader.views.keys().map(PathBuf::from);
         let files: BTreeSet<&PathBuf> = rows.iter().map(|row| &row.file).collect();
@@ -320,6 +322,23 @@ fn check_outputs(jobs: &[Job], arguments: &Batch) -> Result<(), Failure> {
         ))),
         None => Ok(()),
     }
+}
+
+/// Rejects pictures that would replace a file that the model of any row refers to. Pictures of
+/// earlier runs carry stamps; only other files take the time to look for all that is read.
+fn check_inputs(jobs: &[Job], rows: &[Arc<Row>]) -> Result<(), Failure> {
+    let outputs = jobs.iter().flat_map(|job| &job.files).map(|file| &*file.path);
+    let is_foreign = |path: &&Path| path.exists() && io::read_stamp(path).is_none();
+    let foreign: Vec<&Path> = outputs.filter(is_foreign).collect();
+    if foreign.is_empty() {
+        return Ok(());
+    }
+    let files: BTreeSet<&PathBuf> = rows.iter().map(|row| &row.file).collect();
+    let referred = files.iter().filter_map(|file| companions(file)).flatten();
+    let textures = rows.iter().filter_map(|row| row.parsed.options.scene.surfaces.texture.as_ref());
+    let read = Sources::default().with(&files).with(referred.filter_map(|(_, path)| path));
+    let read = read.with(textures);
+    foreign.into_iter().try_for_each(|path| read.spare(path)).map_err(Failure::from)
 }
 
 /// Returns the jobs of a shard. The jobs of a model follow each other, in the order in which models

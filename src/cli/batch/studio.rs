@@ -342,7 +342,11 @@ impl Attempt<'_> {
         let mut stage = Stage::clone(&*loaded?);
         let options = &row.parsed.options;
         let failed = |failure: Failure| Fault::of(&failure);
-        look(&mut stage, &options.scene.seeing, &job.camera().aim).map_err(failed)?;
+        let aim = job.camera().aim.at(job.size());
+        look(&mut stage, &options.scene.seeing, &aim).map_err(failed)?;
+        if let Some(dataset) = self.studio.arguments.dataset {
+            dataset.check_projection(stage.view.projection)?;
+        }
         stage.settings = options.accuracy.of_file(&stage.settings);
         let findings = stage.findings.iter().map(ToString::to_string);
         let findings = findings.chain(stage.notes.iter().cloned()).collect();

@@ -15,7 +15,7 @@ use marraztu_core::scene::Pose;
 use marraztu_io::read_file;
 use serde::Deserialize;
 
-use crate::cli::render::Aim;
+use crate::cli::render::{Aim, PoseLens};
 
 /// The most views of a model.
 const MOST_VIEWS: usize = 100_000;
@@ -132,6 +132,9 @@ struct Transforms {
 struct Frame {
     file_path: Option<String>,
     transform_matrix: Vec<[f64; 4]>,
+    /// "perspective" or "orthographic", as in `cameras.json`.
+    projection: Option<String>,
+    pixels_per_unit: Option<f64>,
     #[serde(flatten)]
     own: Intrinsics,
 }
@@ -207,13 +210,13 @@ impl Intrinsics {
         Ok(Some(Size::new(side(w)?, side(h)?)))
     }
 
-    /// Returns degrees to each side of the axis, across the shorter side of the picture.
+    /// Returns the lens of a perspective camera.
     #[expect(clippy::cast_precision_loss, reason = "at most 16,384 pixels")]
-    fn half_angle(&self, size: Option<Size>) -> Result<Option<f64>, String> {
+    fn lens(&self, size: Option<Size>) -> Result<PoseLens, String> {
         let half = |tangent: f64| {
             let degrees = libm::atan(tangent).to_degrees();
             let is_right = degrees > 0.0 && degrees < 90.0;
-            is_right.then_some(Some(degrees)).ok_or_else(|| "the lens has no angle".to_owned())
+            is_right.then_some(degrees).ok_or_else(|| "the lens has no angle".to_owned())
         };
         let sides = size.map(|size| [size.width as f64, size.height as f64]);
         if let (Some(fl_x), Some([w, h])) = (self.fl_x, sides) {
@@ -228,15 +231,28 @@ impl Intrinsics {
                 let reason = "cx, cy is not the centre of the picture, which is not supported";
                 return Err(reason.to_owned());
             }
-            return half(w.min(h) / 2.0 / if w < h { fl_x } else { fl_y });
+            return half(w.min(h) / 2.0 / if w < h { fl_x } else { fl_y }).map(PoseLens::Shorter);
         }
         if self.fl_x.is_some() {
             return Err("fl_x is in pixels: w and h are needed".to_owned());
         }
-        let Some(angle) = self.camera_angle_x else { return Ok(None) };
+        let Some(angle) = self.camera_angle_x else { return Ok(PoseLens::Selected) };
         let across = libm::tan(angle / 2.0);
-        // The angle is horizontal.
-        half(sides.map_or(across, |[w, h]| across * (h / w).min(1.0)))
+        match sides {
+            Some([w, h]) => half(across * (h / w).min(1.0)).map(PoseLens::Shorter),
+            None => half(across).map(PoseLens::Across),
+        }
+    }
+}
+
+/// Returns the lens of an orthographic camera.
+#[expect(clippy::cast_precision_loss, reason = "at most 16,384 pixels")]
+fn parallel(pixels_per_unit: Option<f64>, size: Option<Size>) -> Result<PoseLens, String> {
+    match (pixels_per_unit, size) {
+        (Some(pixels), Some(Size { width, height })) if pixels > 0.0 => {
+            Ok(PoseLens::Parallel(width.min(height) as f64 / 2.0 / pixels))
+        }
+        _ => Err("orthographic cameras need w, h and pixels_per_unit".to_owned()),
     }
 }
 
@@ -251,12 +267,17 @@ fn from_json(json: &[u8]) -> Result<Vec<CameraView>, String> {
         let intrinsics = frame.own.or(&shared);
         intrinsics.check_lens().map_err(named)?;
         let size = intrinsics.size().map_err(named)?;
-        let half_angle = intrinsics.half_angle(size).map_err(named)?;
+        let lens = match frame.projection.as_deref() {
+            None | Some("perspective") => intrinsics.lens(size),
+            Some("orthographic") => parallel(frame.pixels_per_unit, size),
+            Some(other) => Err(format!("there is no projection {other:?}")),
+        };
+        let lens = lens.map_err(named)?;
         let pose = pose(&frame.transform_matrix).map_err(named)?;
         let stem = frame.file_path.as_deref().map(|path| path.replace('\\', "/"));
         let stem = stem.as_deref().and_then(|path| Path::new(path).file_stem()?.to_str());
         let name = stem.map_or_else(|| i.to_string(), str::to_owned);
-        Ok(CameraView { name, aim: Aim::Pose(pose, half_angle), size })
+        Ok(CameraView { name, aim: Aim::Pose(pose, lens), size })
     };
     frames.into_iter().enumerate().map(view).collect()
 }
@@ -348,14 +369,16 @@ mod tests {
         assert_eq!(views[0].size, Some(Size::new(200, 100)));
         // The shorter side is 100 pixels: atan(50 / 100).
         for view in &views {
-            let Aim::Pose(_, Some(half_angle)) = view.aim else { panic!("{view:?}") };
+            let Aim::Pose(_, PoseLens::Shorter(half_angle)) = view.aim else { panic!("{view:?}") };
             assert!((half_angle - 26.565_051_177_077_99).abs() < 1e-9, "{half_angle}");
         }
         let Aim::Pose(pose, _) = views[0].aim else { panic!() };
         assert_eq!((pose.eye, pose.axes.z_axis), (DVec3::new(5.0, 6.0, 7.0), DVec3::X));
         let angle = br#"{"camera_angle_x": 1.5707963267948966,
             "frames": [{"transform_matrix": [[1,0,0,0],[0,1,0,0],[0,0,1,4]]}]}"#;
-        let Aim::Pose(_, Some(half_angle)) = from_json(angle).unwrap()[0].aim else { panic!() };
+        let Aim::Pose(_, PoseLens::Across(half_angle)) = from_json(angle).unwrap()[0].aim else {
+            panic!()
+        };
         assert!((half_angle - 45.0).abs() < 1e-9);
     }
 

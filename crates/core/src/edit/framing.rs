@@ -117,7 +117,9 @@ pub fn from_pose(scene: &Scene, view: &View, pose: Pose, half_angle: Option<f64>
     if let Some(Sphere { centre, radius }) = sphere(scene, view, &shown(scene, view)) {
         let radius = if radius > 0.0 { radius } else { 1.0 };
         let distance = pose.eye.distance(centre);
-        let near = ((distance - radius) / 2.0).max(radius / 1000.0).min(1.0);
+        // The near plane cuts by the depth along the axis.
+        let depth = (pose.eye - centre).dot(pose.axes.z_axis);
+        let near = ((depth - radius) / 2.0).max(radius / 1000.0).min(1.0);
         let far = 2000.0_f64.max(distance + 2.0 * radius);
         let parallel_near = lens.parallel_near.min(near);
         let half_size = 1.1 * radius;
