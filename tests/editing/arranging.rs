@@ -4,11 +4,13 @@
 //! that also moves along another axis.
 
 use glam::{DMat4, DVec3};
-use marraztu_core::base::math::Axis;
+use marraztu_core::base::{Shared, math::Axis};
 use marraztu_core::edit::arrange::{align, drop_to_ground, ground, reset, world_box};
 use marraztu_core::edit::{GesturePhase, Refusal, items, shapes, transform};
-use marraztu_core::scene::{ItemId, Object, ObjectId, Scene, Shape, Subject, View};
-use marraztu_io as io;
+use marraztu_core::scene::{
+    ItemId, LoadOptions, MaterialChoice, Object, ObjectId, Scene, Shape, Subject, View,
+};
+use marraztu_io::{self as io, Progress};
 
 fn lowest(scene: &Scene, id: ObjectId) -> f64 {
     world_box(scene.objects.get(id).unwrap(), 0.0).unwrap().min.y
@@ -40,6 +42,31 @@ fn a_dropped_object_lands_on_the_ground_or_on_a_horizontal_plane() {
     };
     items::change_object(&scene, ObjectId(plane), tilt).unwrap().apply(&mut scene).unwrap();
     assert_eq!(ground(&scene, id), 0.0);
+}
+
+#[test]
+fn an_object_reaches_as_far_as_its_shown_parts() {
+    let (mut scene, mut view) = io::empty_scene();
+    let text = "v 0 1 0\nv 1 1 0\nv 0 2 0\nv 0 5 0\nv 1 5 0\nv 0 7 0\n\
+        g low\nf 1 2 3\ng high\nf 4 5 6\n";
+    let loaded = io::parse(text.as_bytes(), "a", None, &LoadOptions::default(), &Progress::new());
+    let model = Shared::new(loaded.unwrap().model);
+    let mut object = Object::new(model, MaterialChoice::File);
+    let heights = |object: &Object| world_box(object, 0.0).map(|it| (it.min.y, it.max.y));
+    assert_eq!(heights(&object), Some((1.0, 7.0)));
+    object.hidden_parts = [0].into();
+    assert_eq!(heights(&object), Some((5.0, 7.0)));
+    let (middle, radius) = object.bounding_sphere(0.0).unwrap();
+    assert_eq!(middle, DVec3::new(0.5, 6.0, 0.0));
+    assert!((radius - 1.25_f64.sqrt()).abs() < 1e-12);
+    // Its lowest shown point lands on the ground.
+    items::insert_object(&scene, object.clone()).apply(&mut scene).unwrap();
+    let id = scene.objects.first().unwrap();
+    view.object = Some(id);
+    drop_to_ground(&scene, &view, GesturePhase::First).unwrap().apply(&mut scene).unwrap();
+    assert_eq!(lowest(&scene, id), 0.0);
+    object.hidden_parts = [0, 1].into();
+    assert_eq!(heights(&object), None);
 }
 
 #[test]

@@ -13,4 +13,5 @@ mod items;
 mod navigation;
 mod placement;
 mod selecting;
+mod several;
 mod transforming;

@@ -11,8 +11,9 @@ use egui::{Key, ViewportCommand, ViewportEvent, ViewportId};
 use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::{Command, Lower, Named, Upper};
-use marraztu::app::actions::Request;
+use marraztu::app::actions::{LabRequest, Request};
 use marraztu::app::panels::Panel;
+use marraztu_core::edit::Gesture;
 use marraztu_core::scene::{MaterialChoice, ObjectId, PresetId, Sides};
 
 use crate::editor::Editor;
@@ -296,11 +297,7 @@ fn the_picture_is_saved_as_it_is_shown() {
 fn the_picture_is_copied_as_it_is_shown() {
     let mut editor = Editor::new();
     let ctx = editor.harness.ctx.clone();
-    editor.harness.state_mut().perform(
-        &ctx,
-        Action::CopyPicture,
-        marraztu_core::edit::Gesture::Whole,
-    );
+    editor.harness.state_mut().perform(&ctx, Action::CopyPicture, Gesture::Whole);
     editor.harness.step();
     let commands = &editor.harness.output().platform_output.commands;
     let copied = commands.iter().find_map(|command| match command {
@@ -436,6 +433,44 @@ fn opening_a_scene_over_unsaved_work_asks_first() {
     editor.press(Command(Key::N));
     editor.click_label("Discard");
     assert_eq!(editor.steps(), 0);
+}
+
+/// Saves the first scene, and begins to open it in another editor.
+fn opening() -> (tempfile::TempDir, Editor) {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.marraztu");
+    let mut first = Editor::small();
+    first.press(Command(Key::S));
+    first.type_path(&path);
+    first.wait_until(|_| path.is_file());
+    let mut editor = Editor::small();
+    let ctx = editor.harness.ctx.clone();
+    // The scene arrives in a later frame.
+    editor.harness.state_mut().answer(&ctx, Request::LoadFiles(vec![path]));
+    (folder, editor)
+}
+
+#[test]
+fn a_change_made_while_a_scene_is_read_is_asked_about() {
+    let (_folder, mut editor) = opening();
+    let ctx = editor.harness.ctx.clone();
+    editor.harness.state_mut().perform(&ctx, Action::StepXUp, Gesture::Whole);
+    editor.wait_until(|editor| editor.shows("Save the scene?"));
+    assert_eq!(editor.steps(), 1);
+    editor.click_label("Discard");
+    editor.wait_until(|editor| editor.state().path.is_some());
+    assert_eq!(editor.steps(), 0);
+}
+
+#[test]
+fn a_scene_read_while_a_lesson_was_opened_has_no_way_back() {
+    let (_folder, mut editor) = opening();
+    let ctx = editor.harness.ctx.clone();
+    let lesson = Request::Lab(LabRequest::ShowLesson("depth"));
+    editor.harness.state_mut().answer(&ctx, lesson);
+    editor.wait_until(|editor| editor.state().path.is_some());
+    editor.ask(Request::Lab(LabRequest::Back));
+    assert!(editor.state().path.is_some());
 }
 
 #[test]

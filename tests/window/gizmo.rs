@@ -4,6 +4,7 @@
 //! click meant for the picture; numbers that act as steps instead of being typed; a handle that
 //! cannot be released.
 
+use egui::accesskit::Role;
 use egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
 use glam::{DMat4, DVec3};
 use marraztu::app::actions::Action;
@@ -12,6 +13,7 @@ use marraztu::app::actions::Request;
 use marraztu_core::scene::{Frame, ItemId, LightKind, Subject};
 
 use crate::editor::Editor;
+use crate::panels;
 
 const LEFT: PointerButton = PointerButton::Primary;
 const RIGHT: PointerButton = PointerButton::Secondary;
@@ -112,6 +114,40 @@ fn an_amount_is_typed_without_the_mouse() {
     assert_eq!(editor.steps(), 1);
     editor.press(Lower(Key::X));
     assert_eq!(place(&editor), DVec3::new(-90.0, 0.0, -20.0));
+}
+
+#[test]
+fn digits_typed_with_the_pointer_over_the_picture_are_one_step_that_esc_takes_back() {
+    let mut editor = with_ship();
+    let before = editor.scene();
+    let at = editor.at(0.5, 0.9);
+    editor.hover(at);
+    editor.perform(Action::TypeAmount);
+    for digit in [Key::Num1, Key::Num2] {
+        editor.press(Lower(digit));
+        editor.hover(at + vec2(3.0, 0.0));
+    }
+    assert_eq!((place(&editor).x, editor.steps()), (-88.0, 1));
+    editor.press(Named(Key::Escape));
+    assert!(editor.scene() == before);
+    assert_eq!(editor.steps(), 0);
+}
+
+#[test]
+fn a_click_in_a_panel_ends_a_typed_amount_and_its_change_stays() {
+    let mut editor = Editor::tall();
+    editor.perform_all(&[Action::SubjectObject, Action::TypeAmount]);
+    type_letters(&mut editor, "1");
+    let object = |editor: &Editor| {
+        let scene = editor.scene();
+        scene.objects.get(editor.view().object.unwrap()).unwrap().clone()
+    };
+    let (before, jade) =
+        (object(&editor).material, panels::middle(&editor, Role::RadioButton, "Material: jade"));
+    editor.click(jade, LEFT);
+    type_letters(&mut editor, "5");
+    assert_ne!(object(&editor).material, before);
+    assert_eq!(place(&editor), DVec3::new(-99.0, 0.0, 0.0));
 }
 
 #[test]

@@ -8,7 +8,7 @@ use egui::accesskit::Role;
 use egui::{Key, PointerButton};
 use egui_kittest::kittest::{By, NodeT as _, Queryable as _};
 use marraztu::app::actions::Chord::{Command, Either, Lower, Named};
-use marraztu::app::actions::{Action, Request};
+use marraztu::app::actions::{Action, Also, Request};
 use marraztu_core::accuracy::LightAt;
 use marraztu_core::base::color::Color;
 use marraztu_core::scene::{ItemId, LightKind, MaterialChoice, SpotOwner, Subject};
@@ -372,6 +372,37 @@ fn a_colour_that_is_typed_is_offered_for_the_selection_and_the_background() {
     editor.press(Command(Key::K));
     type_text(&mut editor, "#0a");
     assert!(editor.shows("No match. Try another word"));
+}
+
+#[test]
+fn a_colour_or_material_of_several_is_set_in_all_even_if_the_first_has_it() {
+    let mut editor = Editor::new();
+    editor.perform(Action::SubjectObject);
+    let ids: Vec<_> = editor.scene().objects.ids().take(2).collect();
+    let materials = |editor: &Editor| -> Vec<MaterialChoice> {
+        let scene = editor.scene();
+        ids.iter().map(|id| scene.objects.get(*id).unwrap().material.clone()).collect()
+    };
+    let choose = |editor: &mut Editor, query: &str| {
+        editor.press(Command(Key::K));
+        type_text(editor, query);
+        editor.press(Named(Key::Enter));
+    };
+    choose(&mut editor, "jade");
+    let jade = materials(&editor)[0].clone();
+    assert_ne!(materials(&editor)[1], jade);
+    editor.ask(Request::SelectAlso(ids.iter().copied().map(ItemId::Object).collect(), Also::Only));
+    choose(&mut editor, "jade");
+    assert_eq!(materials(&editor), [jade.clone(), jade]);
+    let lights: Vec<_> = editor.scene().lights.ids().take(2).collect();
+    let both: Vec<_> = lights.iter().copied().map(ItemId::Light).collect();
+    editor.ask(Request::Select(both[0]));
+    choose(&mut editor, "#0000ff");
+    editor.ask(Request::SelectAlso(both, Also::Only));
+    choose(&mut editor, "#ff0000");
+    let scene = editor.scene();
+    let colors = lights.iter().map(|id| scene.lights.get(*id).unwrap().color);
+    assert_eq!(colors.collect::<Vec<_>>(), [Color([255, 0, 0]); 2]);
 }
 
 #[test]

@@ -10,7 +10,7 @@ use egui_kittest::kittest::NodeT as _;
 use glam::DVec3;
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::{Command, Either, Lower, Named, Upper};
-use marraztu::app::actions::Request;
+use marraztu::app::actions::{Also, Request};
 use marraztu_core::base::Shared;
 use marraztu_core::base::color::Color;
 use marraztu_core::edit::{Gesture, items, placement};
@@ -295,6 +295,24 @@ fn a_stretch_goes_along_the_axes_of_the_chosen_frame() {
         assert!((scale - expected).length() < 1e-9, "{button}: {scale}");
         assert_eq!(editor.steps(), steps + 1);
     }
+}
+
+#[test]
+fn a_stretch_of_several_objects_multiplies_each_placement() {
+    let mut editor = with_object();
+    let ids: Vec<ObjectId> = editor.scene().objects.ids().take(2).collect();
+    let places = |editor: &Editor| -> Vec<f64> {
+        let scene = editor.scene();
+        ids.iter().map(|id| scene.objects.get(*id).unwrap().placement.now().w_axis.x).collect()
+    };
+    assert_eq!(places(&editor), [-100.0, 100.0]);
+    let both: Vec<ItemId> = ids.iter().copied().map(ItemId::Object).collect();
+    editor.ask(Request::SelectAlso(both, Also::Only));
+    editor.perform(Action::ToggleFrame);
+    type_into(&mut editor, "Stretch X", "2");
+    click(&mut editor, Role::Button, "Stretch along world's axes");
+    assert_eq!(places(&editor), [-200.0, 200.0]);
+    assert_eq!(editor.steps(), 1);
 }
 
 #[test]

@@ -15,6 +15,7 @@ use marraztu_core::scene::{ItemId, Sides};
 use crate::editor::Editor;
 
 const LEFT: PointerButton = PointerButton::Primary;
+const RIGHT: PointerButton = PointerButton::Secondary;
 
 fn names(editor: &Editor) -> Vec<String> {
     let state = editor.state();
@@ -108,6 +109,36 @@ fn ctrl_a_selects_all_of_the_subject_and_once_more_everything_and_esc_one() {
     editor.press(Command(Key::A));
     editor.press(Named(Key::Tab));
     assert_eq!(names(&editor).len(), 1);
+}
+
+#[test]
+fn an_item_selected_alone_leaves_the_others_for_good() {
+    // One selection later, the item that the keys acted on is selected again.
+    let mut editor = with_both();
+    let current = editor.state().selected().unwrap();
+    let cam = object(&editor, "cam");
+    editor.ask(Request::Select(cam));
+    editor.ask(Request::Select(current));
+    assert_eq!(names(&editor).len(), 1);
+    // It is selected itself.
+    let mut editor = with_both();
+    editor.ask(Request::Select(current));
+    assert_eq!(names(&editor).len(), 1);
+    // A new item takes its place.
+    let mut editor = with_both();
+    editor.perform(Action::AddCube);
+    assert_eq!(editor.state().several, several::Others::default());
+}
+
+#[test]
+fn a_right_click_on_one_of_several_keeps_them() {
+    let mut editor = with_both();
+    let rect = editor.picture();
+    let half = rect.size().min_elem() / 2.0;
+    // The keys act on the x_wing.
+    editor.click(rect.center() + vec2(-0.6, 0.0) * half, RIGHT);
+    assert!(editor.shows("Split into parts"));
+    assert_eq!(names(&editor), ["r_falke", "x_wing"]);
 }
 
 #[test]

@@ -111,6 +111,8 @@ pub(crate) struct Wish {
 #[derive(Debug)]
 pub(crate) struct Opening {
     pub(crate) path: PathBuf,
+    /// The number of changes by the user before reading began.
+    pub(crate) changes: u64,
     pub(crate) result: Result<Opened, SceneFileError>,
 }
 

@@ -11,8 +11,8 @@ use crate::app::documents::loading::Fetched;
 use crate::app::input::keyboard::Keyboard;
 use crate::app::state::State;
 use crate::app::widgets::text::one_or_count;
-use marraztu_core::edit::{Gesture, Refusal, copies, items, several};
-use marraztu_core::scene::{ItemId, MaterialChoice, ObjectId, Subject};
+use marraztu_core::edit::{Gesture, Refusal, copies, several};
+use marraztu_core::scene::{ItemId, MaterialChoice, Object, ObjectId, Subject, View};
 use marraztu_io::{self as io, Fragment, Known, LoadError, SceneFileError};
 
 impl App {
@@ -110,10 +110,11 @@ impl App {
             self.state.tell(Some(format!("Pasted {what}")));
         }
         let Some(material) = material else { return Ok(()) };
-        let State { scene, view, .. } = &self.state;
-        let id = view.object.ok_or(Refusal::NoObject)?;
-        let command = items::change_object(scene, id, |object| object.material = material)?;
-        let command = several::spread(scene, command, &self.state.others());
+        // It goes to the objects, whatever the keys act on.
+        let view = View { subject: Subject::Object, ..self.state.view.clone() };
+        let (scene, others) = (&self.state.scene, self.state.others());
+        let set = |object: &mut Object| object.material = material.clone();
+        let command = several::change_objects(scene, &view, &others, set)?;
         let label = format!("Paste a material to {}", self.state.acted_on_name());
         self.change(command, Gesture::Whole, &label);
         self.state.tell(Some(label));

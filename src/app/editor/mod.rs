@@ -86,6 +86,8 @@ pub struct App {
     /// The view of models that open alone: degrees to the right of the front, and up.
     pub(crate) models_from: Option<[f64; 2]>,
     pub(crate) viewport: Viewport,
+    /// The number of changes so far, with those undone and redone.
+    pub(crate) changes: u64,
     /// The user's scene, while the scene of a lesson is shown.
     pub(crate) waiting_scene: Option<Box<State>>,
     pub(crate) lab: Work,
@@ -135,6 +137,7 @@ impl App {
             opening: Vec::new(),
             models_from: None,
             viewport: Viewport::default(),
+            changes: 0,
             waiting_scene: None,
             lab: Work::default(),
             comparison: Comparison::default(),

@@ -345,11 +345,13 @@ impl App {
         selection::settle(&self.state.scene, &mut self.state.view);
     }
 
+    /// Selects an item alone.
     pub(crate) fn select(&mut self, selection: Selection, gesture: Gesture) {
         if let Some(command) = selection.command {
             self.navigate(command, gesture);
         }
         self.show_view(selection.view);
+        self.state.several = Others::default();
     }
 
     /// Changes the scene. Every change except undo and redo ends here.
@@ -367,14 +369,20 @@ impl App {
     ) {
         let state = &mut self.state;
         let before = state.scene.clone();
+        let acted_on = state.selected();
         let selected = Selected::of(&state.view, &state.several);
         let repeats = state.next_repeat(gesture);
         match state.history.perform(&mut state.scene, command, gesture, label) {
             // The selection before and after the step is recorded, so undo and redo restore it.
             Ok(()) => {
+                self.changes += 1;
                 (state.gesture, state.repeats) = (gesture, repeats);
                 state.message = None;
                 selection::follow(&before, &state.scene, &mut state.view);
+                // The others belonged to the item that was selected before.
+                if state.selected() != acted_on {
+                    state.several = Others::default();
+                }
                 select(state);
                 let after = Selected::of(&state.view, &state.several);
                 state.history.note_selected(selected, after);

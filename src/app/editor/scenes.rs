@@ -92,16 +92,25 @@ impl App {
         if cfg!(target_family = "wasm") {
             self.opening.push(path.clone());
         }
+        let changes = self.changes;
         self.begin_loading(ctx, label, false, move |progress| {
             let result = io::open(&path, progress);
-            Fetched::Scene(Box::new(Opening { path, result }))
+            Fetched::Scene(Box::new(Opening { path, changes, result }))
         });
     }
 
     pub(crate) fn take_scene(&mut self, ctx: &Context, opening: Opening) {
-        let Opening { path, result } = opening;
+        let Opening { path, changes, result } = opening;
         match result {
-            Ok(opened) => self.show_scene(ctx, &path, opened),
+            // The user has gone on working while the scene was read, and has not been asked.
+            Ok(_) if changes != self.changes && !self.is_all_saved() => {
+                self.unless_unsaved(ctx, After::Open(Some(path)));
+            }
+            Ok(opened) => {
+                // A lesson may have been opened while the scene was read.
+                self.back_to_scene();
+                self.show_scene(ctx, &path, opened);
+            }
             Err(SceneFileError::Model(LoadError::Cancelled)) => {
                 self.state.tell(Some("Opening was cancelled".to_owned()));
             }

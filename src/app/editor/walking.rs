@@ -33,6 +33,7 @@ impl App {
     /// Crosses one step of the history and restores the selection on its other side.
     fn walk<R>(&mut self, selected: Option<&Selected>, step: impl FnOnce(&mut State) -> R) -> R {
         let before = self.state.scene.clone();
+        self.changes += 1;
         self.state.message = None;
         let crossed = step(&mut self.state);
         self.follow_steps();

@@ -17,8 +17,8 @@ use crate::app::widgets::color_picker::hexadecimal;
 use crate::app::widgets::controls;
 use marraztu_core::accuracy::{ACCURACY_PRESETS, AXES, AccuracyPreset};
 use marraztu_core::base::color::Color;
-use marraztu_core::edit::{Gesture, Refusal, items, several};
-use marraztu_core::scene::{Command, ItemId, Material, MaterialChoice, Object, ObjectId, PresetId};
+use marraztu_core::edit::{Gesture, several};
+use marraztu_core::scene::{Command, ItemId, Light, Material, MaterialChoice, Object, PresetId};
 use marraztu_io::{EXAMPLES, lessons};
 
 const WIDTH: f32 = 560.0;
@@ -224,20 +224,15 @@ fn materials(state: &State, search: &mut Search, entries: &mut Vec<Entry>) {
         let on = object.material == to || (is_own && matches!(to, MaterialChoice::Own(_)));
         let hint = "Applies it to the selected object.".to_owned();
         let what = format!("Material of {}", state.acted_on_name());
-        let request = of_objects(state, id, what, |object| object.material = to.clone());
+        let request = of_objects(state, what, |object| object.material = to.clone());
         let (kind, key, refused) = ("Material", String::new(), None);
         entries.push(Entry { label, kind, hint, key, on, refused, score, request });
     }
 }
 
-fn of_objects(state: &State, id: ObjectId, label: String, change: impl Fn(&mut Object)) -> Request {
-    of_selected(state, label, items::change_object(&state.scene, id, change))
-}
-
-/// Extends a change to all selected items.
-fn of_selected(state: &State, label: String, command: Result<Command, Refusal>) -> Request {
-    let spread = |command| several::spread(&state.scene, command, &state.others());
-    Request::change(label, Gesture::Whole, command.map(spread))
+fn of_objects(state: &State, label: String, change: impl Fn(&mut Object)) -> Request {
+    let command = several::change_objects(&state.scene, &state.view, &state.others(), change);
+    Request::change(label, Gesture::Whole, command)
 }
 
 /// Adds everything that can get a colour, written as `#ff8000` or by its name.
@@ -247,17 +242,17 @@ fn colors(
     mut score: impl FnMut(&str) -> Option<u32>,
     entries: &mut Vec<Entry>,
 ) {
-    let mut add = |what: String, hint: &str, request: Request| {
+    let mut add = |what: String, hint: &str, request: &dyn Fn(String) -> Request| {
         let (label, hint) = (format!("{what}: {written}"), hint.to_owned());
         let Some(score) = score(&label) else { return };
         let (kind, key, on, refused) = ("Colour", String::new(), false, None);
+        let request = request(what);
         entries.push(Entry { label, kind, hint, key, on, refused, score, request });
     };
     let name = state.acted_on_name();
     match state.selected() {
-        Some(ItemId::Object(id)) => {
-            let what = format!("Colour of {name}");
-            let request = of_objects(state, id, what.clone(), |object| {
+        Some(ItemId::Object(_)) => {
+            let paint = |object: &mut Object| {
                 // Highlights stay as they are; ambient light follows the new colour.
                 let Material { specular, exponent, .. } = object.part_look(0).material;
                 let diffuse = color.factors();
@@ -265,20 +260,24 @@ fn colors(
                 let emission = [0.0; 3];
                 let own = Material { ambient, diffuse, specular, exponent, emission };
                 object.material = MaterialChoice::Own(own);
-            });
-            add(what, "Gives it a custom material in this colour.", request);
+            };
+            let hint = "Gives it a custom material in this colour.";
+            add(format!("Colour of {name}"), hint, &|what| of_objects(state, what, paint));
         }
-        Some(ItemId::Light(id)) => {
-            let what = format!("Colour of {name}");
-            let command = items::change_light(&state.scene, id, |light| light.color = color);
-            let request = of_selected(state, what.clone(), command);
-            add(what, "Sets the light to this colour.", request);
+        Some(ItemId::Light(_)) => {
+            let hint = "Sets the light to this colour.";
+            add(format!("Colour of {name}"), hint, &|what| {
+                let (view, others) = (&state.view, state.others());
+                let set = |light: &mut Light| light.color = color;
+                let command = several::change_lights(&state.scene, view, &others, set);
+                Request::change(what, Gesture::Whole, command)
+            });
         }
         Some(ItemId::Camera(_)) | None => {}
     }
-    let command = Ok(Command::Background(color));
-    let request = Request::change("Set the background", Gesture::Whole, command);
-    add("Background".to_owned(), "Sets the background to this colour.", request);
+    add("Background".to_owned(), "Sets the background to this colour.", &|_| {
+        Request::change("Set the background", Gesture::Whole, Ok(Command::Background(color)))
+    });
 }
 
 fn settings(state: &State, search: &mut Search, entries: &mut Vec<Entry>) {

@@ -57,7 +57,9 @@ impl Viewport {
                 None => requests.push(Request::Do(Action::FrameAll)),
             },
             Purpose::Menu(at) => {
-                requests.extend(item.map(Request::Select));
+                // As in the outline, the menu of one of several selected items acts on all of them.
+                let alone = item.filter(|item| !state.is_selected(*item));
+                requests.extend(alone.map(Request::Select));
                 self.menu = Some(Menu { at, item });
                 egui::Popup::open_id(ctx, menu::id());
             }

@@ -21,7 +21,11 @@ impl Viewport {
             let (actions, lights): (_, &[Action]) =
                 match menu.item.filter(|item| state.scene.contains(*item)) {
                     Some(item) => {
-                        ui.weak(state.name(item).unwrap_or_default());
+                        // The actions of one of several selected items act on all of them.
+                        match state.is_selected(item) {
+                            true => ui.weak(state.acted_on_name()),
+                            false => ui.weak(state.name(item).unwrap_or_default()),
+                        };
                         ui.separator();
                         (actions_on(item), &[])
                     }

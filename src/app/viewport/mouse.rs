@@ -44,7 +44,9 @@ pub(crate) struct Mouse {
     drag: Option<Drag>,
     /// The speed of flight, relative to the default.
     speed: f64,
+    /// The drags and typed amounts so far, and the gestures of the wheel.
     count: u64,
+    wheel: u64,
     /// Whether the last press of the left button hit the picture, and the one before it.
     pressed: [bool; 2],
     /// The handle of the gizmo that is dragged or gets a typed amount.
@@ -97,7 +99,7 @@ enum Motion {
 
 impl Default for Mouse {
     fn default() -> Self {
-        Self { drag: None, speed: 1.0, count: 0, pressed: [false; 2], grab: None }
+        Self { drag: None, speed: 1.0, count: 0, wheel: 0, pressed: [false; 2], grab: None }
     }
 }
 
@@ -199,6 +201,8 @@ impl Mouse {
             }
             return;
         }
+        // A press in a panel ends it, too: a typed amount starts from the scene as it was.
+        self.end_typing(requests);
         if comparison::grip(state, response.rect).is_some_and(|grip| grip.contains(from)) {
             return;
         }
@@ -210,7 +214,6 @@ impl Mouse {
         if !response.contains_pointer() || egui::Popup::is_any_open(ui.ctx()) {
             return;
         }
-        self.end_typing(requests);
         // The button and the modifiers select the motion; a handle under the pointer comes first.
         let pose = state.scene.selected_camera(&state.view).pose.now();
         let held = under.gizmo.and_then(|gizmo| Some((gizmo, gizmo.handle_at(from)?)));
@@ -335,7 +338,7 @@ impl Mouse {
         });
         // Moving the pointer or holding a key begins a new gesture.
         if moved || !ui.input(|input| input.keys_down.is_empty()) {
-            self.count += 1;
+            self.wheel += 1;
         }
         let (Some(at), true) = (at, notches != 0.0) else { return };
         if self.is_flying() {
@@ -345,7 +348,7 @@ impl Mouse {
         if self.is_dragging() {
             return;
         }
-        let gesture = gestures::numbered(self.count, "wheel");
+        let gesture = gestures::numbered(self.wheel, "wheel");
         let at = (at - rect.min) * ui.ctx().pixels_per_point();
         let pointer = navigation::Pointer {
             at: DVec2::new(f64::from(at.x), f64::from(at.y)),

@@ -41,12 +41,12 @@ impl Onto {
     }
 }
 
-/// Lists the visible objects at a pixel, nearest first.
+/// Lists the drawn objects at a pixel, nearest first.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
 pub(crate) fn objects_at(state: &State, [x, y]: [usize; 2], size: Size) -> Vec<ObjectId> {
     let at = DVec2::new(x as f64 + 0.5, y as f64 + 0.5);
     let mut found: Vec<(f64, ObjectId)> = Vec::new();
-    for (id, object) in state.scene.objects.iter().filter(|(_, object)| object.visible) {
+    for (id, object) in drawn(state) {
         let onto = Onto::new(state, object, size);
         let nearest = nearest_depth(&onto, object, at);
         found.extend(nearest.map(|depth| (depth, id)));
@@ -56,14 +56,21 @@ pub(crate) fn objects_at(state: &State, [x, y]: [usize; 2], size: Size) -> Vec<O
     found.into_iter().map(|(_, id)| id).collect()
 }
 
-/// Lists the visible objects with a vertex in a part of the window.
+/// Lists the drawn objects with a vertex in a part of the window.
 pub(crate) fn objects_within(state: &State, onto: &Projection, area: Rect) -> Vec<ObjectId> {
-    let shown = state.scene.objects.iter().filter(|(_, object)| object.visible);
     let touches = |object: &Object| {
         let mut vertices = object.placed_vertices(state.view.time);
         vertices.any(|p| onto.place(p).is_some_and(|at| area.contains(at)))
     };
-    shown.filter(|(_, object)| touches(object)).map(|(id, _)| id).collect()
+    drawn(state).filter(|(_, object)| touches(object)).map(|(id, _)| id).collect()
+}
+
+/// Lists the objects that the view shows: the visible ones, or of these the selected one alone.
+fn drawn(state: &State) -> impl Iterator<Item = (ObjectId, &Object)> {
+    let view = &state.view;
+    let alone = view.only_selected || view.polygons.is_some();
+    let is_drawn = move |id| !alone || view.object == Some(id);
+    state.scene.objects.iter().filter(move |(id, object)| object.visible && is_drawn(*id))
 }
 
 /// Finds the depth of the nearest triangle at a point. Triangles that cross the near plane are
@@ -138,6 +145,18 @@ mod tests {
     fn points_behind_the_observer_are_not_picked() {
         let state = state(&[500.0]);
         assert!(objects_at(&state, [400, 300], Size::new(800, 600)).is_empty());
+    }
+
+    #[test]
+    fn of_an_isolated_object_none_of_the_others_is_picked() {
+        let mut state = state(&[-50.0, 100.0, 0.0]);
+        state.view.object = Some(ObjectId(102));
+        state.view.only_selected = true;
+        let size = Size::new(800, 600);
+        assert_eq!(objects_at(&state, [400, 300], size), [ObjectId(102)]);
+        let rect = Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(800.0, 600.0));
+        let onto = Projection::new(&state, rect, size);
+        assert_eq!(objects_within(&state, &onto, rect), [ObjectId(102)]);
     }
 
     #[test]

@@ -8,8 +8,8 @@ use super::arrange::world_box;
 use super::items::{insert_objects, put_camera, put_light};
 use super::{Change, Refusal, items, selection, several};
 use crate::scene::{
-    AnchorMut, Camera, CameraId, CameraMode, Command, ItemId, Light, LightId, Object, ObjectId,
-    Pose, Scene, SpotOwner, Tracked, View,
+    Aim, AnchorMut, Camera, CameraId, CameraMode, Command, ItemId, Light, LightId, Object,
+    ObjectId, Orbit, Pose, Scene, SpotOwner, Tracked, View,
 };
 
 /// The largest number of places that are tried for copies.
@@ -95,8 +95,21 @@ pub fn insert(scene: &Scene, view: &View, copies: Copies) -> Change {
         add(&mut after, command)?;
     }
     for (_, mut light) in lights {
-        if let AnchorMut::Owner(owner) = light.kind.anchor_mut() {
-            *owner = attached(scene, owner, &new_objects, &new_cameras);
+        // The orbit turns a bulb's position before it is shown, so `by` is turned back.
+        let orbit = light.kind.orbit().copied().unwrap_or_default();
+        let turned_back = Orbit { speed: -orbit.speed, ..orbit }.at(by, view.time);
+        match light.kind.anchor_mut() {
+            AnchorMut::Position(position) => {
+                *position = Tracked::new(*position.now() + turned_back);
+            }
+            AnchorMut::Owner(SpotOwner::Fixed(aim)) => {
+                let now = *aim.now();
+                *aim = Tracked::new(Aim { position: now.position + by, ..now });
+            }
+            AnchorMut::Owner(owner) => {
+                *owner = attached(scene, owner, &new_objects, &new_cameras);
+            }
+            AnchorMut::Everywhere | AnchorMut::Direction(_) => {}
         }
         let command = put_light(&after, light)?;
         add(&mut after, command)?;

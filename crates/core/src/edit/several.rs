@@ -6,10 +6,10 @@
 
 use std::collections::BTreeSet;
 
-use super::{Change, Refusal, items, placement, selection};
+use super::{Change, GesturePhase, Refusal, items, motion, placement, selection};
 use crate::scene::{
-    Anchor, AnchorMut, Camera, Command, Item, ItemId, LIGHT_NUMBERS, Light, LightKind, Object,
-    Scene, SpotOwner, Subject, Tracked, View,
+    Anchor, AnchorMut, Camera, Command, Item, ItemId, LIGHT_NUMBERS, Light, LightId, LightKind,
+    Object, ObjectId, Scene, SpotOwner, Subject, Tracked, View,
 };
 
 /// The items that are selected in addition to the one that the keys act on.
@@ -118,14 +118,50 @@ pub fn toggle_locked(scene: &Scene, view: &View, others: &[ItemId]) -> Change {
     })
 }
 
+/// Changes all selected objects, even if the first one has the new value already.
+///
+/// # Errors
+/// If no object is selected.
+pub fn change_objects(
+    scene: &Scene,
+    view: &View,
+    others: &[ItemId],
+    change: impl Fn(&mut Object),
+) -> Change {
+    each(scene, view, others, |scene, view| match selection::selected(view) {
+        Some(ItemId::Object(id)) => items::change_object(scene, id, &change),
+        Some(ItemId::Camera(_) | ItemId::Light(_)) | None => Err(Refusal::NoObject),
+    })
+}
+
+/// Changes all selected lights, even if the first one has the new value already.
+///
+/// # Errors
+/// If no light is selected.
+pub fn change_lights(
+    scene: &Scene,
+    view: &View,
+    others: &[ItemId],
+    change: impl Fn(&mut Light),
+) -> Change {
+    each(scene, view, others, |scene, view| match selection::selected(view) {
+        Some(ItemId::Light(id)) => items::change_light(scene, id, &change),
+        Some(ItemId::Object(_) | ItemId::Camera(_)) | None => Err(Refusal::NoLight),
+    })
+}
+
 /// Extends a command to all items of a kind: a value that it changes in the selected item is set in
-/// the others, too.
+/// the others, too. A command that already replaces one of the others, as those of [`each`] do, is
+/// returned unchanged.
 #[must_use]
 pub fn spread(scene: &Scene, command: Command, others: &[ItemId]) -> Command {
     let Some(changed) = replaced(&command) else { return command };
+    if others.iter().any(|id| *id != changed.id() && replaces(&command, *id)) {
+        return command;
+    }
     let mut commands = Vec::new();
     for id in others {
-        commands.extend(alike(scene, changed, *id).map(Command::Replace));
+        commands.extend(alike(scene, changed, *id));
     }
     if commands.is_empty() {
         return command;
@@ -148,18 +184,36 @@ fn replaced(command: &Command) -> Option<&Item> {
     }
 }
 
-/// Returns another item of the same kind, with the values that `changed` changes.
-fn alike(scene: &Scene, changed: &Item, other: ItemId) -> Option<Item> {
-    match (changed, other) {
+/// Returns whether a command replaces an item.
+fn replaces(command: &Command, id: ItemId) -> bool {
+    match command {
+        Command::Replace(item) => item.id() == id,
+        Command::Batch(commands) => commands.iter().any(|command| replaces(command, id)),
+        Command::Insert { .. }
+        | Command::Remove(_)
+        | Command::Reorder { .. }
+        | Command::Lock { .. }
+        | Command::Background(_)
+        | Command::NextId(_) => false,
+    }
+}
+
+/// Sets the values that `changed` changes in another item of the same kind.
+fn alike(scene: &Scene, changed: &Item, other: ItemId) -> Option<Command> {
+    let item = match (changed, other) {
         (Item::Object(id, to), ItemId::Object(other)) if *id != other => {
+            let before = scene.objects.get(*id)?;
+            if before.spin != to.spin {
+                return spin_alike(scene, before, to, other);
+            }
             let mut object = scene.objects.get(other)?.clone();
             let placement = object.placement.clone();
             // A locked item takes all changes except the placement.
-            object_alike(scene.objects.get(*id)?, to, &mut object)?;
+            object_alike(before, to, &mut object)?;
             if scene.locked.contains(&ItemId::Object(other)) {
                 object.placement = placement;
             }
-            Some(Item::Object(other, Box::new(object)))
+            Item::Object(other, Box::new(object))
         }
         (Item::Camera(id, to), ItemId::Camera(other)) if *id != other => {
             let mut camera = scene.cameras.get(other)?.clone();
@@ -168,19 +222,50 @@ fn alike(scene: &Scene, changed: &Item, other: ItemId) -> Option<Item> {
             if scene.locked.contains(&ItemId::Camera(other)) {
                 camera.pose = pose;
             }
-            Some(Item::Camera(other, Box::new(camera)))
+            Item::Camera(other, Box::new(camera))
         }
         (Item::Light(id, to), ItemId::Light(other)) if *id != other => {
+            let before = scene.lights.get(*id)?;
+            if before.kind.orbit() != to.kind.orbit() {
+                return orbit_alike(scene, before, to, other);
+            }
             let mut light = scene.lights.get(other)?.clone();
             let kind = light.kind.clone();
-            light_alike(scene.lights.get(*id)?, to, &mut light);
+            light_alike(before, to, &mut light);
             if scene.locked.contains(&ItemId::Light(other)) {
                 light.kind = kind;
             }
-            Some(Item::Light(other, Box::new(light)))
+            Item::Light(other, Box::new(light))
         }
-        _ => None,
+        _ => return None,
+    };
+    Some(Command::Replace(item))
+}
+
+/// Changes the spin of another object as the selected one's was changed. Both keep their own
+/// rotations so far.
+fn spin_alike(scene: &Scene, before: &Object, after: &Object, other: ObjectId) -> Option<Command> {
+    let mut spin = scene.objects.get(other)?.spin;
+    for axis in 0..3 {
+        set(&before.spin.axes[axis], &after.spin.axes[axis], &mut spin.axes[axis]);
     }
+    set(&before.spin.speed, &after.spin.speed, &mut spin.speed);
+    let phase = phase_of(&before.placement, &after.placement);
+    motion::set_spin(scene, other, spin, after.spin.since, phase).ok()
+}
+
+/// Changes the orbit of another bulb as the selected one's was changed. Both keep their own
+/// positions.
+fn orbit_alike(scene: &Scene, before: &Light, after: &Light, other: LightId) -> Option<Command> {
+    let (old, new) = (before.kind.orbit()?, after.kind.orbit()?);
+    let mut orbit = *scene.lights.get(other)?.kind.orbit()?;
+    set(&old.on, &new.on, &mut orbit.on);
+    set(&old.speed, &new.speed, &mut orbit.speed);
+    let phase = match (before.kind.anchor(), after.kind.anchor()) {
+        (Anchor::Position(old), Anchor::Position(new)) => phase_of(old, new),
+        _ => GesturePhase::First,
+    };
+    motion::set_orbit(scene, other, orbit, new.since, phase).ok()
 }
 
 /// Sets a field if it was changed.
@@ -197,7 +282,6 @@ fn vector(before: glam::DVec3, after: glam::DVec3, own: glam::DVec3) -> glam::DV
 
 fn object_alike(before: &Object, after: &Object, own: &mut Object) -> Option<()> {
     set(&before.visible, &after.visible, &mut own.visible);
-    set(&before.spin, &after.spin, &mut own.spin);
     set(&before.material, &after.material, &mut own.material);
     set(&before.surface, &after.surface, &mut own.surface);
     set(&before.texture, &after.texture, &mut own.texture);
@@ -229,7 +313,12 @@ fn follow<T: Clone>(
     own: &Tracked<T>,
     to: T,
 ) -> Tracked<T> {
-    if after.depth() > before.depth() { own.moved(to) } else { own.replaced(to) }
+    phase_of(before, after).apply(own, to)
+}
+
+/// Returns the phase of the gesture that changed a value: the first change pushes the old one.
+fn phase_of<T>(before: &Tracked<T>, after: &Tracked<T>) -> GesturePhase {
+    if after.depth() > before.depth() { GesturePhase::First } else { GesturePhase::Continued }
 }
 
 fn camera_alike(before: &Camera, after: &Camera, own: &mut Camera) {
@@ -275,9 +364,6 @@ fn kind_alike(before: &LightKind, after: &LightKind, own: &mut LightKind) {
         if let (Some(old), Some(new), Some(own)) = (old, new, (number.get_mut)(own)) {
             set(&old, &new, own);
         }
-    }
-    if let (Some(old), Some(new), Some(own)) = (before.orbit(), after.orbit(), own.orbit_mut()) {
-        set(old, new, own);
     }
     match (before.anchor(), after.anchor(), own.anchor_mut()) {
         (Anchor::Direction(old), Anchor::Direction(new), AnchorMut::Direction(direction))

@@ -6,8 +6,8 @@ use glam::{DMat3, DMat4, DVec3};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    FileMaterial, MapKind, MaterialChoice, Model, PresetId, SurfaceMap, SurfaceMaps, Texture,
-    Tracked,
+    Bounds, FileMaterial, MapKind, MaterialChoice, Model, PresetId, SurfaceMap, SurfaceMaps,
+    Texture, Tracked,
 };
 use crate::base::math::{self, Axis};
 use crate::base::{Shared, color::Color};
@@ -150,21 +150,46 @@ impl Object {
         self.world_from_object(time) * self.model.mesh.object_from_mesh()
     }
 
-    /// Returns the world positions of the vertices that a face uses.
+    /// Returns the world positions of the vertices that a face of a shown part uses. If parts are
+    /// hidden, a vertex may come once for each of its faces.
     pub fn placed_vertices(&self, time: f64) -> impl Iterator<Item = DVec3> {
         let world_from_mesh = self.world_from_mesh(time);
-        self.model.mesh.used_positions().map(move |p| world_from_mesh.transform_point3(p))
+        self.shown_positions().map(move |p| world_from_mesh.transform_point3(p))
     }
 
-    /// Returns the mean of the object's vertices in the world.
+    /// Returns whether every part of the model is drawn.
+    fn shows_all_parts(&self) -> bool {
+        self.hidden_parts.is_empty() || self.model.is_placeholder()
+    }
+
+    /// Returns the positions of [`Self::placed_vertices`] in the space of the mesh.
+    fn shown_positions(&self) -> impl Iterator<Item = DVec3> {
+        let mesh = &self.model.mesh;
+        let all = self.shows_all_parts();
+        let whole = all.then(|| mesh.used_positions());
+        let shown = (!all).then(|| mesh.positions_of_parts(|part| self.shows_part(part)));
+        whole.into_iter().flatten().chain(shown.into_iter().flatten())
+    }
+
+    /// Returns the extent of [`Self::shown_positions`]; `None` without any.
+    fn shown_bounds(&self) -> Option<Bounds> {
+        match self.shows_all_parts() {
+            true => self.model.mesh.bounds(),
+            false => Bounds::of(self.shown_positions()),
+        }
+    }
+
+    /// Returns the mean of the model's vertices in the world. Hidden parts count, so cameras that
+    /// orbit the object stay where they are when a part is hidden.
     pub fn centre(&self, time: f64) -> DVec3 {
         self.world_from_mesh(time).transform_point3(self.model.mesh.mean())
     }
 
-    /// Returns the centre and radius of a bounding sphere in the world. The centre is the middle of
-    /// the model's box, and the sphere passes through the farthest vertex. `None` without vertices.
+    /// Returns the centre and radius of a bounding sphere of the shown parts in the world. The
+    /// centre is the middle of their box along the object's axes, and the sphere passes through the
+    /// farthest vertex. `None` without vertices.
     pub fn bounding_sphere(&self, time: f64) -> Option<(DVec3, f64)> {
-        let middle = self.model.mesh.bounds()?.centre();
+        let middle = self.shown_bounds()?.centre();
         let centre = self.world_from_mesh(time).transform_point3(middle);
         let squares = self.placed_vertices(time).map(|p| p.distance_squared(centre));
         Some((centre, squares.fold(0.0, f64::max).sqrt()))

@@ -12,7 +12,7 @@ use crate::app::widgets::controls::{Switch, row, section};
 use crate::app::widgets::gestures;
 use crate::app::widgets::number::{Number, vector};
 use marraztu_core::base::color;
-use marraztu_core::edit::{Gesture, items, lights, motion, placement};
+use marraztu_core::edit::{Gesture, items, lights, motion, placement, several};
 use marraztu_core::scene::{
     Aim, Anchor, Attenuation, ItemId, Light, LightId, Orbit, Scene, SpotOwner, Tracked,
 };
@@ -95,22 +95,21 @@ impl Shown<'_> {
                 change(requests, self.label("Shadows of"), Gesture::Whole, command);
             }
         }
-        let mut set = |color, gesture| {
-            let command = items::change_light(scene, id, |light| light.color = color);
-            change(requests, self.label("Colour"), gesture, command);
-        };
         let channels = [("Red", "q and Q"), ("Green", "v and V"), ("Blue", "a and A")];
         for (i, (name, keys)) in channels.into_iter().enumerate() {
             if let Some((to, gesture)) = channel_ui(ui, name, keys, light.color.0[i]) {
-                let mut color = light.color;
-                color.0[i] = to;
-                set(color, gesture);
+                let command = items::change_light(scene, id, |light| light.color.0[i] = to);
+                change(requests, self.label("Colour"), gesture, command);
             }
         }
         row(ui, "Picker", |ui| {
             if let Some((color, gesture)) = swatch(ui, "Colour", "The light's colour", light.color)
             {
-                set(color, gesture);
+                // All lights get the whole colour, even the channels that this one already has.
+                let (view, others) = (&state.view, state.others());
+                let set = |light: &mut Light| light.color = color;
+                let command = several::change_lights(scene, view, &others, set);
+                change(requests, self.label("Colour"), gesture, command);
             }
         });
         let hint = "The key from 0 to 9 that switches the light; each key belongs to one light";

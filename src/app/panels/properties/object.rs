@@ -1,5 +1,7 @@
 //! The properties of an object.
 
+use std::collections::BTreeSet;
+
 use egui::{Button, Id, Ui};
 use glam::{DMat3, DMat4, DVec3};
 
@@ -12,7 +14,9 @@ use crate::app::widgets::number::{Number, keep_angles, short, shown_angles, vect
 use crate::app::widgets::text::grouped;
 use marraztu_core::base::Shared;
 use marraztu_core::base::math::{self, Axis};
-use marraztu_core::edit::{Gesture, Refusal, arrange, items, motion, placement, transform};
+use marraztu_core::edit::{
+    Gesture, Refusal, arrange, items, motion, placement, several, transform,
+};
 use marraztu_core::scene::{Command, Frame, Model, Object, ObjectId, Sides, Spin, UpAxis};
 use marraztu_io::is_example;
 
@@ -140,7 +144,11 @@ impl Shown<'_> {
             if response.on_hover_text(hint).on_disabled_hover_text("Set a factor first").clicked() {
                 let factors = DVec3::from_array(kept);
                 let phase = state.phase(Gesture::Whole);
-                let command = transform::stretch(&state.scene, &state.view, factors, phase);
+                // Each object is stretched from its own placement.
+                let others = state.others();
+                let command = several::each(&state.scene, &state.view, &others, |scene, view| {
+                    transform::stretch(scene, view, factors, phase)
+                });
                 self.change(requests, "Stretch", Gesture::Whole, command);
             }
         });
@@ -216,21 +224,23 @@ const MOST_WHILE_DRAGGED: usize = 200_000;
 
 /// Returns the size of the box around an object in the world, measured again if it changes.
 fn size(ui: &Ui, id: ObjectId, object: &Object) -> Option<DVec3> {
-    type Measured = (ObjectId, DMat4, Shared<Model>, Option<DVec3>);
+    type Measured = (ObjectId, DMat4, Shared<Model>, BTreeSet<u32>, Option<DVec3>);
     let key = Id::unique("size of an object");
-    let (now, model) = (*object.placement.now(), &object.model);
+    let (now, model, hidden) = (*object.placement.now(), &object.model, &object.hidden_parts);
     // The size is cached, since it visits every vertex.
     let known: Option<Measured> = ui.data(|data| data.get_temp(key));
-    if let Some((of, placement, mesh, size)) = known {
+    if let Some((of, placement, mesh, without, size)) = known {
         let many = model.mesh.positions().len() > MOST_WHILE_DRAGGED;
         let waits = many && ui.input(|input| input.pointer.any_down());
-        if of == id && Shared::same(&mesh, model) && (placement == now || waits) {
+        let is_same = of == id && Shared::same(&mesh, model) && without == *hidden;
+        if is_same && (placement == now || waits) {
             return size;
         }
     }
     let still = Object { spin: Spin::default(), ..object.clone() };
     let size = arrange::world_box(&still, 0.0).map(|bounds| bounds.extent());
-    ui.data_mut(|data| data.insert_temp::<Measured>(key, (id, now, model.clone(), size)));
+    let measured = (id, now, model.clone(), hidden.clone(), size);
+    ui.data_mut(|data| data.insert_temp::<Measured>(key, measured));
     size
 }
 

@@ -272,6 +272,17 @@ impl Mesh {
         used(&self.shape.positions, &self.shape.unused)
     }
 
+    /// Returns the positions of the corners of all polygons in some parts, relative to
+    /// [`Self::offset`]. A shared vertex comes once for each corner.
+    pub fn positions_of_parts(&self, some: impl Fn(u32) -> bool) -> impl Iterator<Item = DVec3> {
+        let shape = &self.shape;
+        let polygons = shape.polygon_parts.iter().zip(shape.starts.windows(2));
+        let corners = polygons
+            .filter(move |(part, _)| some(**part))
+            .flat_map(|(_, ends)| &shape.corners[ends[0] as usize..ends[1] as usize]);
+        corners.map(|vertex| dvec3(shape.positions[*vertex as usize]))
+    }
+
     /// Returns the vertices that no face uses, ascending.
     pub fn unused_vertices(&self) -> &[u32] {
         &self.shape.unused
