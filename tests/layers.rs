@@ -14,8 +14,8 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::image::Size;
 use marraztu_core::base::math::rotation;
 use marraztu_core::scene::{
-    ItemId, MaterialChoice, Model, NONE, Normals, ObjectId, Part, PresetId, Projection, Scene,
-    Sides, SourceCorner, View, dvec3,
+    ItemId, MaterialChoice, MeshSource, Model, NONE, Normals, ObjectId, Part, PresetId, Projection,
+    Scene, Sides, SourceCorner, View, dvec3,
 };
 use marraztu_io::{self as io, Progress};
 use marraztu_render::{
@@ -281,6 +281,42 @@ fn the_matrices_of_a_camera_agree_with_each_other() {
     assert!((camera.focal - 55.0 * (1.0 + 2.0_f64.sqrt())).abs() < 1e-9, "{}", camera.focal);
 }
 
+/// A polygon of four corners with these normals.
+fn plate(positions: [[f32; 3]; 4], normals: [[f32; 3]; 4]) -> Shared<Model> {
+    let corner = |i: u32| SourceCorner { position: i, uv: NONE, normal: i };
+    let source = MeshSource::of_polygons((0..4).map(corner), vec![4]);
+    let (positions, normals) = (positions.to_vec(), normals.to_vec());
+    model_of("plate", MeshSource { positions, normals, ..source })
+}
+
+#[test]
+fn normals_of_a_stretched_object_are_those_of_its_file() {
+    // A tilt of 0.006 degrees becomes 45 degrees, but the normals of the file stay along z.
+    let corners = [[-1.0, -1.0, -1e-4], [1.0, -1.0, 1e-4], [1.0, 1.0, 1e-4], [-1.0, 1.0, -1e-4]];
+    let stretched = DMat4::from_scale(DVec3::new(100.0, 100.0, 1e6));
+    let (scene, view) = scene(&[(plate(corners, [[0.0, 0.0, 1.0]; 4]), stretched)]);
+    let layers = all(&shot(&scene, &view), NormalSpace::World);
+    let normal = vectors_at(&layers, Layer::Normal, SIZE.width * 55 + 75);
+    assert!(normal.distance(DVec3::Z) < 1e-6, "{normal}");
+}
+
+#[test]
+fn where_normals_cancel_out_the_triangles_own_faces_the_parallel_rays() {
+    // The ray from the eye to the plate meets its other side.
+    let corners =
+        [[300.0, -50.0, 0.0], [340.0, -50.0, -100.0], [340.0, 50.0, -100.0], [300.0, 50.0, 0.0]];
+    let [up, down] = [[0.0, 1.0, 0.0], [0.0, -1.0, 0.0]];
+    let (scene, view) = scene(&[(plate(corners, [up, up, down, down]), DMat4::IDENTITY)]);
+    let view = View { projection: Projection::Orthographic, ..view };
+    // The middle row lies at y = 0, where the normals cancel out.
+    let size = Size::new(151, 111);
+    let shot = Shot::new(&scene, &view, &Settings::default(), size);
+    let layers = all(&shot, NormalSpace::World);
+    let normal = vectors_at(&layers, Layer::Normal, size.width * 55 + 110);
+    let own = DVec3::new(10.0, 0.0, 4.0).normalize_or_zero();
+    assert!(normal.distance(own) < 1e-6, "{normal}");
+}
+
 /// Two squares with texture coordinates and a part each.
 fn board() -> Shared<Model> {
     let corner = |i: u32| SourceCorner { position: i, uv: i % 4, normal: NONE };
@@ -289,7 +325,7 @@ fn board() -> Shared<Model> {
         |x: f32| [[x, -1.0, 0.0], [x + 1.0, -1.0, 0.0], [x + 1.0, 1.0, 0.0], [x, 1.0, 0.0]];
     model_of(
         "board",
-        marraztu_core::scene::MeshSource {
+        MeshSource {
             positions: [square(-1.0), square(0.0)].concat(),
             uvs: vec![[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]],
             corners: (0..8).map(corner).collect(),

@@ -7,12 +7,12 @@ mod common;
 
 use common::{at, cube, draw, edit, scene, square};
 use glam::{DMat4, DVec3};
-use marraztu_core::accuracy::{LightAt, Samples, Settings, Shot, Transparency};
+use marraztu_core::accuracy::{LightAt, LightValues, Samples, Settings, Shot, Transparency};
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{
     ItemId, Light, LightId, LightKind, List, Material, MaterialChoice, ObjectId, Scene, View,
 };
-use marraztu_render::{Renderer, plan_frame};
+use marraztu_render::{Bands, Renderer, Unseen, plan_frame, unseen, without_ground};
 
 const SIDE: usize = 64;
 
@@ -89,6 +89,31 @@ fn a_threshold_draws_the_more_opaque_half_and_nothing_of_the_others() {
     let settings = with(Transparency::Threshold);
     let want = over(scene.background.0, &[(RED, 1.0)]);
     assert_eq!(middle(&draw(&scene, &view, &settings, SIDE)), want);
+}
+
+#[test]
+fn an_object_below_the_threshold_is_unseen_because_it_is_transparent() {
+    let (scene, view) = sheets(&[(-100.0, RED, 0.49)]);
+    let settings = with(Transparency::Threshold);
+    let shot = Shot::new(&scene, &view, &settings, Size::new(SIDE, SIDE));
+    let mut renderer = Renderer::default();
+    renderer.render(&plan_frame(&shot));
+    assert_eq!(unseen(&mut renderer, &shot), [(ObjectId(10), Unseen::Transparent)]);
+}
+
+#[test]
+fn without_ground_a_pane_has_its_own_colour_and_opacity_in_any_values_of_light() {
+    let (scene, view) = sheets(&[(0.0, [1.0, 0.0, 0.0], 0.5)]);
+    for light_values in [LightValues::Stored, LightValues::Linear] {
+        let settings = Settings { light_values, ..Settings::default() };
+        let shot = Shot::new(&scene, &view, &settings, Size::new(SIDE, SIDE));
+        let whole = without_ground(&mut Renderer::default(), &shot);
+        let [r, g, b, alpha] = middle(&whole);
+        assert_eq!([r, g, b], [255, 0, 0], "{light_values:?}");
+        assert!((127..=128).contains(&alpha), "{light_values:?}: {alpha}");
+        let band = Bands::new(&shot, true).draw_next(&|| true, &|_, _| {}).unwrap();
+        assert!(band.unwrap() == whole, "{light_values:?}");
+    }
 }
 
 #[test]

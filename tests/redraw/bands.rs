@@ -67,6 +67,17 @@ fn every_choice_and_every_preset_is_drawn_in_bands() {
 }
 
 #[test]
+fn the_ideal_is_drawn_in_bands_of_an_odd_number_of_tile_rows() {
+    let (scene, view) = marraztu_io::default_scene();
+    let (samples, light) = (Samples::TwoFiftySix, LightAt::Sample);
+    let settings = Settings { samples, light, ..Settings::default() };
+    let shot = Shot::new(&scene, &view, &settings, Size::new(40, 250));
+    let (count, bands) = in_bands(&shot, false, 40 * 64 * 3);
+    assert_eq!(count, 2);
+    assert!(bands == Renderer::default().render(&plan_frame(&shot)).pixels());
+}
+
+#[test]
 fn a_picture_in_bands_is_cancelled_between_tiles() {
     let (scene, view) = marraztu_io::default_scene();
     let shot = Shot::new(&scene, &view, &Settings::default(), Size::new(200, 330));

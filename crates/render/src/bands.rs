@@ -108,7 +108,7 @@ impl Bands {
             // The first layer is over black; the second one, over white, reveals the background.
             match &mut band {
                 None => band = Some(drawn),
-                Some(band) => uncover(band, &drawn),
+                Some(band) => uncover(band, &drawn, plan.variants.decoding()),
             }
         }
         self.next = rows.end;

@@ -40,6 +40,7 @@ use crate::work_stealing::{own, together};
 use marraztu_core::accuracy::Arithmetic;
 use marraztu_core::base::image::{Picture, Size};
 
+pub(crate) use layers::surfaces_alone;
 pub use picking::Hit;
 
 /// Draws pictures, and reuses memory from one frame to the next.

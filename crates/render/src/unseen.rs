@@ -32,7 +32,8 @@ pub enum Unseen {
         /// The item that covers most of it.
         by: ItemId,
     },
-    /// It is fully transparent, or fails the alpha test, at every pixel that could show it.
+    /// It is fully transparent, or fails the alpha test, at every pixel that could show it; or it
+    /// is less than half opaque, and transparency is a threshold.
     Transparent,
     /// It covers no pixel centre: it is too small, or seen edge-on.
     BetweenPixels,
@@ -63,14 +64,21 @@ impl fmt::Display for Unseen {
 /// Objects that the user hid, completely or part by part, are not listed.
 #[must_use]
 pub fn unseen(renderer: &mut Renderer, shot: &Shot) -> Vec<(ObjectId, Unseen)> {
-    let Shot { scene, view, size, .. } = shot;
+    let Shot { scene, view, size, settings } = shot;
+    // Visibility does not depend on light, and light at faces is the fastest.
+    let settings = Settings {
+        light: LightAt::Face,
+        transparency: settings.transparency,
+        ..Settings::default()
+    };
     let wanted = scene.objects.iter().filter(|(id, object)| is_wanted(view, *id, object));
     let wanted: BTreeSet<ItemId> = wanted.map(|(id, _)| ItemId::Object(id)).collect();
     // If the picture shows all of them, nothing has to be examined.
     let Some(whole) = renderer.items_unless_all_seen(wanted.clone()) else { return Vec::new() };
     let seen: BTreeSet<ItemId> = whole.iter().flatten().copied().collect();
     let left_out = left_out(shot);
-    let mut alone = Alone { scene, view, size: *size, whole, renderer: Renderer::default() };
+    let (size, renderer) = (*size, Renderer::default());
+    let mut alone = Alone { scene, view, settings, size, whole, renderer };
     let objects = wanted.difference(&seen).filter_map(|item| match item {
         ItemId::Object(id) => Some(*id),
         ItemId::Camera(_) | ItemId::Light(_) => None,
@@ -118,6 +126,7 @@ fn is_wanted(view: &View, id: ObjectId, object: &Object) -> bool {
 struct Alone<'a> {
     scene: &'a Scene,
     view: &'a View,
+    settings: Settings,
     size: Size,
     /// The item at each pixel of the whole picture.
     whole: Vec<Option<ItemId>>,
@@ -188,9 +197,7 @@ impl Alone<'_> {
             locked: self.scene.locked.clone(),
         };
         let view = View { marks: false, fill: Fill::Filled, ..self.view.clone() };
-        // Visibility does not depend on light, and light at faces is the fastest.
-        let settings = Settings { light: LightAt::Face, ..Settings::default() };
-        let plan = plan_frame(&Shot::new(&scene, &view, &settings, self.size));
+        let plan = plan_frame(&Shot::new(&scene, &view, &self.settings, self.size));
         self.renderer.render(&plan);
         self.renderer.pixels_of(ItemId::Object(id))
     }

@@ -3,13 +3,16 @@
 //! The scene is drawn over black and over white. If a is the covered share of a pixel and C its
 //! colour, the two results are a C and a C + (1 - a), and their difference is the visible share of
 //! the background. Every effect that covers a pixel partly is therefore exact: samples, lines,
-//! transparency. Porter and Duff, "Compositing Digital Images", SIGGRAPH 1984.
+//! transparency. If light is computed in linear values, colours are mixed linearly, so both results
+//! are decoded first. Porter and Duff, "Compositing Digital Images", SIGGRAPH 1984.
 
 use super::frame::FramePlan;
+use super::frame::variants::Decoding;
 use super::plan::plan_frame;
+use super::texture::sample::linear_factors;
 use super::{Cancelled, Renderer};
 use marraztu_core::accuracy::Shot;
-use marraztu_core::base::color::Color;
+use marraztu_core::base::color::{Color, byte, encoded};
 use marraztu_core::base::image::Picture;
 
 /// Renders a picture with a transparent background; colours are not premultiplied.
@@ -31,7 +34,7 @@ pub fn without_ground_while(
 ) -> Result<Picture, Cancelled> {
     let [black, white] = over_black_and_white(shot);
     let mut picture = renderer.render_while(&black, wanted)?.clone();
-    uncover(&mut picture, renderer.render_while(&white, wanted)?);
+    uncover(&mut picture, renderer.render_while(&white, wanted)?, black.variants.decoding());
     Ok(picture)
 }
 
@@ -44,8 +47,13 @@ pub(crate) fn over_black_and_white(shot: &Shot) -> [FramePlan; 2] {
     })
 }
 
-/// Removes the background of a picture over black, by the same picture over white.
-pub(crate) fn uncover(black: &mut Picture, white: &Picture) {
+/// Removes the background of a picture over black, by the same picture over white. `decoding` gives
+/// the values in which colours were mixed.
+pub(crate) fn uncover(black: &mut Picture, white: &Picture, decoding: Decoding) {
+    let covered = match decoding {
+        Decoding::Stored => covered,
+        Decoding::Linear => covered_in_linear_light,
+    };
     for (pixel, white) in black.pixels_mut().iter_mut().zip(white.pixels()) {
         *pixel = covered(*pixel, *white);
     }
@@ -67,6 +75,23 @@ fn covered(black: [u8; 4], white: [u8; 4]) -> [u8; 4] {
     [color(0), color(1), color(2), share as u8]
 }
 
+/// Works like [`covered`], with colours that were mixed in linear light. Alpha is linear.
+fn covered_in_linear_light(black: [u8; 4], white: [u8; 4]) -> [u8; 4] {
+    // Most pixels are covered fully: decoding and encoding keep every byte.
+    if black == white {
+        return black;
+    }
+    let light = |pixel: [u8; 4], i: usize| linear_factors()[usize::from(pixel[i])];
+    let seen = |i: usize| (light(white, i) - light(black, i)).max(0.0);
+    let share = 1.0 - (seen(0) + seen(1) + seen(2)) / 3.0;
+    let alpha = byte(share);
+    if alpha == 0 {
+        return [0; 4];
+    }
+    let color = |i: usize| byte(encoded(light(black, i) / share));
+    [color(0), color(1), color(2), alpha]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -76,5 +101,15 @@ mod tests {
         assert_eq!(covered([10, 20, 30, 255], [10, 20, 30, 255]), [10, 20, 30, 255]);
         assert_eq!(covered([0, 0, 0, 255], [255, 255, 255, 255]), [0; 4]);
         assert_eq!(covered([50, 100, 0, 255], [178, 228, 128, 255]), [100, 201, 0, 127]);
+    }
+
+    /// Half of white light is 188: see the tests of [`encoded`].
+    #[test]
+    fn a_pixel_mixed_in_linear_light_is_split_in_linear_light() {
+        let [pane, empty] = [([188, 0, 0, 255], [255, 188, 188, 255]), ([0, 0, 0, 255], [255; 4])];
+        assert_eq!(covered_in_linear_light(pane.0, pane.1), [255, 0, 0, 127]);
+        assert_eq!(covered_in_linear_light(empty.0, empty.1), [0; 4]);
+        let opaque = [10, 20, 30, 255];
+        assert_eq!(covered_in_linear_light(opaque, opaque), opaque);
     }
 }

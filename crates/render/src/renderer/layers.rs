@@ -56,7 +56,7 @@ impl Renderer {
     ) -> Result<Layers, Cancelled> {
         let names = LayerNames::of(&shot.scene);
         let mut layers = Layers::new(shot.size, set, normals);
-        let shot = surfaces_alone(shot);
+        let shot = without_light(shot);
         let plan = plan_frame(&shot);
         let watch = Cancellation::new(wanted);
         // The geometry of the last picture is overwritten.
@@ -112,19 +112,24 @@ impl Renderer {
 }
 
 /// Returns the shot without lights and lines, and with the default settings.
-fn surfaces_alone(shot: &Shot) -> Shot {
+fn without_light(shot: &Shot) -> Shot {
     let mut scene = shot.scene.clone();
     // Lights do not matter, and planning their shadows takes time.
     scene.lights = List::default();
-    let view = View {
+    let view = surfaces_alone(&shot.view);
+    Shot { scene, view, settings: Settings::default(), size: shot.size }
+}
+
+/// Returns the view with filled polygons alone: no lines and no marks.
+pub(crate) fn surfaces_alone(view: &View) -> View {
+    View {
         fill: Fill::Filled,
         edges_over_fill: false,
         face_normals: false,
         vertex_normals: false,
         marks: false,
-        ..shot.view.clone()
-    };
-    Shot { scene, view, settings: Settings::default(), size: shot.size }
+        ..view.clone()
+    }
 }
 
 /// The rows of a layer that belong to one row of tiles.
@@ -191,6 +196,8 @@ struct Shape {
     /// The same in the world.
     in_world: [DVec3; 3],
     normals: [DVec3; 3],
+    /// The squared length below which a mean of the normals has no direction.
+    least: f64,
     /// The triangle's own normal, if its corners have opposite ones.
     normal: DVec3,
     uvs: Option<Uvs>,
@@ -264,14 +271,20 @@ impl<'a> Source<'a> {
             [DVec3::ZERO; 3]
         };
         let across = (b - a).cross(c - a);
+        let ray = match self.projection {
+            Projection::Perspective => a,
+            Projection::Orthographic => DVec3::NEG_Z,
+        };
         let world = |vector: DVec3| self.world_from_camera.transform_vector3(vector);
         Shape {
             weights: QuickWeights::new(Weights::new(plan, draw, vertices, number, [0; 2])),
             corners: [a, b - a, c - a],
             in_world: [self.world_from_camera.transform_point3(a), world(b - a), world(c - a)],
             normals,
+            // Normals of stretched objects are not of length 1.
+            least: 1e-12 * normals.map(DVec3::length_squared).into_iter().fold(0.0, f64::max),
             // Turned towards the camera.
-            normal: if across.dot(a) > 0.0 { -across } else { across },
+            normal: if across.dot(ray) > 0.0 { -across } else { across },
             uvs: uvs(draw, number),
         }
     }
@@ -402,7 +415,7 @@ impl<'a> Source<'a> {
         let sum = a * weights.x + b * weights.y + c * weights.z;
         // Corners with opposite normals have none between them.
         let normal = match sum.length_squared() {
-            square if square > 1e-12 => sum * (1.0 / square.sqrt()),
+            square if square > shape.least => sum * (1.0 / square.sqrt()),
             _ => math::unit(shape.normal).unwrap_or(DVec3::Z),
         };
         self.turn.map_or(normal, |turn| turn * normal)

@@ -53,7 +53,7 @@ impl Renderer {
         Ok(picture)
     }
 
-    /// Draws the windows that contain damaged tiles.
+    /// Draws the windows of the picture, or of the band, that contain damaged tiles.
     pub(super) fn draw_supersampled(
         &mut self,
         plan: &FramePlan,
@@ -61,13 +61,16 @@ impl Renderer {
         watch: &Cancellation<'_>,
     ) {
         let mut larger = self.larger.take().unwrap_or_else(|| Box::new(Self::new(self.level)));
-        let [width, height] = [plan.size.width, plan.size.height]
+        let [width, height] = [plan.size.width, self.picture.size().height]
             .map(|side| i32::try_from(side).expect("pictures have 32-bit sizes"));
         let columns = tiles_of(plan.size)[0];
+        // Windows begin with the band, so none of them reaches beyond its rows.
+        let top = i32::try_from(self.first_row).expect("below 2^26") * TILE;
+        let band = PixelBox { left: 0, top, right: width, bottom: top + height };
         // The blocks of these tiles no longer have one colour.
         self.filled.fill(Filled::default());
         watch.expect_tiles(damage.tiles());
-        for window in windows(PixelBox { left: 0, top: 0, right: width, bottom: height }) {
+        for window in windows(band) {
             let tiles = (window.top / TILE..(window.bottom - 1) / TILE + 1).flat_map(|row| {
                 (window.left / TILE..(window.right - 1) / TILE + 1)
                     .map(move |column| row * columns + column)
@@ -79,10 +82,8 @@ impl Renderer {
             }
             // If cancelled, the remaining windows stay as they are.
             let Ok(colors) = larger.averaged(plan, window, &|| watch.goes_on()) else { break };
-            let first_row = i32::try_from(self.first_row).expect("below 2^26");
-            // In a band, rows count from its first row of tiles.
-            let at = [window.left, window.top - first_row * TILE];
-            copy(&colors, window, at, self.picture.pixels_mut(), plan.size.width);
+            let within = [window.left, window.top - top];
+            copy(&colors, window, within, self.picture.pixels_mut(), plan.size.width);
             (0..count).for_each(|_| watch.tile_is_painted());
         }
         self.larger = Some(larger);

@@ -129,29 +129,65 @@ impl Mips {
     }
 }
 
-/// Halves a picture: each pixel is the mean of four, rounded to the nearest byte. If the texture is
-/// decoded, the mean is one of linear values.
+/// Halves a picture: each pixel is the mean of the texels that it covers, rounded to the nearest
+/// byte. If the texture is decoded, the mean is one of linear values.
 fn halved(picture: &Picture, decoding: Decoding) -> Picture {
     let from = picture.size();
-    let half = |side: usize| (side / 2).max(1);
-    let size = Size::new(half(from.width), half(from.height));
-    let pixels = (0..size.height).flat_map(|y| (0..size.width).map(move |x| (x, y)));
-    let mean = |(x, y): (usize, usize)| {
-        // Odd sides repeat their last column or row.
-        let beside = |i: usize, side: usize| [2 * i, (2 * i + 1).min(side - 1)];
-        let (columns, rows) = (beside(x, from.width), beside(y, from.height));
-        std::array::from_fn(|channel| {
-            let at = |i: usize, j: usize| u16::from(picture.pixel(columns[i], rows[j])[channel]);
-            // Alpha is linear as it is stored, so only colours are decoded.
-            if decoding == Decoding::Linear && channel < 3 {
-                let of = |i, j| linear_factors()[usize::from(at(i, j))];
-                return byte(encoded((of(0, 0) + of(1, 0) + of(0, 1) + of(1, 1)) / 4.0));
+    let [columns, rows] = [from.width, from.height].map(covered);
+    let size = Size::new(columns.len(), rows.len());
+    let pixels = rows.iter().flat_map(|row| columns.iter().map(move |column| (column, row)));
+    let mean = |(column, row): (&Covered, &Covered)| {
+        let (mut sums, mut light, mut whole) = ([0; 4], [0.0; 3], 0);
+        for (y, height) in row {
+            for (x, width) in column {
+                let (pixel, area) = (picture.pixel(*x, *y), width * height);
+                whole += area;
+                for (sum, byte) in sums.iter_mut().zip(pixel) {
+                    *sum += u64::from(byte) * u64::from(area);
+                }
+                if decoding == Decoding::Linear {
+                    for (sum, byte) in light.iter_mut().zip(pixel) {
+                        *sum += linear_factors()[usize::from(byte)] * f64::from(area);
+                    }
+                }
             }
-            let sum = at(0, 0) + at(1, 0) + at(0, 1) + at(1, 1);
-            u8::try_from((sum + 2) / 4).unwrap_or(u8::MAX)
-        })
+        }
+        let half = u64::from(whole / 2);
+        let stored = sums.map(|sum| u8::try_from((sum + half) / u64::from(whole)).unwrap_or(255));
+        match decoding {
+            Decoding::Stored => stored,
+            // Alpha is linear as it is stored, so only colours are decoded.
+            Decoding::Linear => {
+                let [r, g, b] = light.map(|sum| byte(encoded(sum / f64::from(whole))));
+                [r, g, b, stored[3]]
+            }
+        }
     };
     Picture::from_pixels(size, pixels.map(mean).collect()).unwrap_or_default()
+}
+
+/// The texels that a pixel of the halved picture covers along an axis, with their shares in a
+/// common unit.
+type Covered = Vec<(usize, u32)>;
+
+/// Returns the texels that each pixel of the halved picture covers along a side of the whole one.
+///
+/// If a side of 2 m + 1 texels becomes m pixels, each covers 2 + 1 / m texels. In units of 1 / m,
+/// pixel i has m - i of texel 2 i, m of the next one and i + 1 of the one after it. Guthe and
+/// Heckbert, "Non-Power-of-Two Mipmapping", NVIDIA 2005.
+fn covered(side: usize) -> Vec<Covered> {
+    let half = side / 2;
+    let share = |units: usize| u32::try_from(units).unwrap_or(u32::MAX);
+    match side {
+        0 | 1 => vec![vec![(0, 1)]],
+        _ if side.is_multiple_of(2) => {
+            (0..half).map(|i| vec![(2 * i, 1), (2 * i + 1, 1)]).collect()
+        }
+        _ => {
+            let shares = |i| [(2 * i, half - i), (2 * i + 1, half), (2 * i + 2, i + 1)];
+            (0..half).map(|i| shares(i).map(|(at, units)| (at, share(units))).to_vec()).collect()
+        }
+    }
 }
 
 #[cfg(test)]
@@ -224,5 +260,27 @@ mod tests {
                 mips.sample_beside(([0.3, 0.7], [0.0; 2]), [[9.0, 0.0], [0.0, 9.0]], TRILINEAR);
             assert!((color[0] - 9.0 / 255.0).abs() < 1e-12);
         }
+    }
+
+    /// Columns of five texels become two, with 2.5 texels each, and then one.
+    #[test]
+    fn every_texel_of_an_odd_side_has_the_same_share_in_the_last_mipmap() {
+        for decoding in [Decoding::Stored, Decoding::Linear] {
+            let means = (0..5).map(|white| {
+                let pixels = (0..5).map(|i| if i == white { [255; 4] } else { [0; 4] }).collect();
+                let picture = Picture::from_pixels(Size::new(5, 1), pixels).unwrap();
+                let mips = Mips::new(&Shared::new(Texture::new("", picture)), decoding);
+                mips.levels.last().unwrap().picture.pixel(0, 0)
+            });
+            // A fifth of white, whose light is stored as 124: see `linear`.
+            let fifth = if decoding == Decoding::Linear { 124 } else { 51 };
+            for mean in means {
+                assert!(mean[0].abs_diff(fifth) <= 1 && mean[3].abs_diff(51) <= 1, "{mean:?}");
+            }
+        }
+        let size = Size::new(3, 3);
+        let pixels = (0..9).map(|i| [28 * i; 4]).collect();
+        let picture = Picture::from_pixels(size, pixels).unwrap();
+        assert_eq!(halved(&picture, Decoding::Stored).pixels(), [[112; 4]]);
     }
 }
