@@ -44,8 +44,9 @@ pub(crate) struct Mouse {
     drag: Option<Drag>,
     /// The speed of flight, relative to the default.
     speed: f64,
-    /// The drags and typed amounts so far, and the gestures of the wheel.
+    /// The drags and typed amounts so far.
     count: u64,
+    /// The gestures of the wheel so far.
     wheel: u64,
     /// Whether the last press of the left button hit the picture, and the one before it.
     pressed: [bool; 2],
