@@ -15,6 +15,7 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::image::Size;
 use marraztu_core::scene::{Command, Item, LightId, Model, ObjectId, Scene, Sides, View};
 use marraztu_render::{PathPixels, Renderer, explain_frame, plan_frame};
+use rayon::ThreadPoolBuilder;
 
 const FIRST: ObjectId = ObjectId(10);
 
@@ -32,11 +33,15 @@ const EARLY: Path = ("early", |pixels| pixels.early);
 const ALL: [Path; 8] = [FILLED, CORNERS, LIT, ALONE, JOINED, TINY, FACES, EARLY];
 
 /// Counts the pixels of a scene without marks, by path.
+///
+/// On one thread: of several, one may find faces that another is just lighting, and shades their
+/// pixels from lists instead.
 fn paths(scene: &Scene, view: &View, settings: Settings) -> PathPixels {
     let view = View { marks: false, ..view.clone() };
     let plan = plan_frame(&Shot::new(scene, &view, &settings, Size::new(400, 400)));
     let mut renderer = Renderer::default();
-    renderer.render(&plan);
+    let one = ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    one.install(|| renderer.render(&plan));
     renderer.path_pixels()
 }
 
