@@ -187,6 +187,23 @@ fn case_92_faces_without_texture_area_have_neither_bumps_nor_nan() {
 }
 
 #[test]
+fn next_to_a_clamped_texture_there_are_no_bumps() {
+    let ramp = greys(8, 8, |column, _| (column * 36) as u8);
+    let clamped = Shared::new(Texture { wrap: Wrap::Clamp, ..Texture::clone(&ramp) });
+    let sun = Some(DVec3::new(-0.48, -0.36, -0.8));
+    for (settings, uvs) in ways().flat_map(|way| {
+        [[across(-3.0, -1.5), across(-1.5, 0.0)], [across(1.0, 2.5), across(2.5, 4.0)]]
+            .map(|uvs| (way, uvs))
+    }) {
+        let [plain, bumpy] = [SurfaceMaps::new(), bump(clamped.clone(), 5.0)].map(|maps| {
+            let (scene, view) = lit(sheet(uvs, maps, dull()), sun);
+            draw(&scene, &view, &settings, SIDE)
+        });
+        assert!(plain == bumpy, "{settings:?}");
+    }
+}
+
+#[test]
 fn case_93_bumps_of_no_height_change_no_bit_and_are_left_out() {
     let noise = greys(8, 8, |column, row| (column * 91 + row * 57) as u8);
     let sun = Some(DVec3::new(-0.48, -0.36, -0.8));

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use super::replace::SaveError;
-use marraztu_core::scene::{Object, Scene};
+use marraztu_core::scene::{Model, Scene};
 
 /// The files that a scene was read from: models with their MTL files and textures, and the scene
 /// file itself. No output of the scene may overwrite one of them.
@@ -19,11 +19,15 @@ pub struct Sources {
 }
 
 impl Sources {
-    /// Collects the files of all objects.
+    /// Collects the files of all objects, and of the models that show cameras.
     pub fn of(scene: &Scene) -> Self {
         let mut sources = Self::default();
         for (_, object) in scene.objects.iter() {
-            sources.add_all(files(object));
+            sources.add_all(files(&object.model));
+            sources.add_all(object.texture.iter().map(|texture| &texture.source));
+        }
+        for (_, camera) in scene.cameras.iter() {
+            sources.add_all(files(&camera.model));
         }
         sources
     }
@@ -71,10 +75,7 @@ impl Sources {
     }
 }
 
-/// Returns the files that an object was read from.
-fn files(object: &Object) -> impl Iterator<Item = &Path> {
-    let model = &object.model;
-    let texture = object.texture.iter().map(|texture| texture.source.as_path());
-    let companions = model.companions.iter().map(PathBuf::as_path);
-    model.source.as_deref().into_iter().chain(companions).chain(texture)
+/// Returns the files that a model was read from.
+fn files(model: &Model) -> impl Iterator<Item = &PathBuf> {
+    model.source.iter().chain(&model.companions)
 }

@@ -1,5 +1,6 @@
 //! Texture positions in f64, reduced to one repetition before rounding to f32: for triangles that
-//! span more texels than f32 can tell apart, and for the alpha test.
+//! span more texels than f32 can tell apart, and for the alpha test. The sampler clamps those of
+//! clamped textures, after their offsets.
 
 use fearless_simd::{Select as _, Simd, SimdBase as _, SimdFloat as _, f64x8};
 
@@ -58,7 +59,7 @@ impl ExactPlacement {
             // Whole repetitions are removed in f64, before the position is rounded to f32.
             let own = match self.wrap {
                 Wrap::Repeat => u - u.floor(),
-                Wrap::Clamp => u.clamp(0.0, 1.0),
+                Wrap::Clamp => u,
             };
             (own * it.side) as f32
         })
@@ -85,11 +86,7 @@ impl Along {
         let u = u.simd_lt(high).select(u, high);
         let own = match wrap {
             Wrap::Repeat => u - u.floor(),
-            Wrap::Clamp => {
-                let (zero, one) = (f64x8::splat(simd, 0.0), f64x8::splat(simd, 1.0));
-                let u = u.simd_gt(zero).select(u, zero);
-                u.simd_lt(one).select(u, one)
-            }
+            Wrap::Clamp => u,
         };
         own * self.side
     }

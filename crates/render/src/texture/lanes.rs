@@ -86,8 +86,10 @@ impl<'a> Sampler<'a> {
         to: &mut Rows<f32>,
     ) {
         let lanes = Sixteen(simd);
-        // Wraps all positions first, in place.
-        for axis in 0..2 {
+        // Wraps all positions first, in place. Those that the anisotropic filter moves are clamped
+        // after that: next to a clamped texture, no sample may lie inside.
+        let axes = if self.clamps_probes() { 0..0 } else { 0..2 };
+        for axis in axes {
             let row = &mut places.position[axis];
             for at in (0..len).step_by(16) {
                 lanes.store(self.reduced(lanes.load(row, at), axis), row, at);
@@ -118,6 +120,12 @@ impl<'a> Sampler<'a> {
                 self.mipmapped::<S, D>(simd, places, len, to);
             }
         }
+    }
+
+    /// Returns whether positions are clamped after they have moved to the samples of a pixel.
+    #[inline(always)]
+    fn clamps_probes(&self) -> bool {
+        self.filter == Filter::Anisotropic && self.levels[0].wrap == Wrap::Clamp
     }
 
     /// Samples alpha, from 0 to 1, at sixteen positions in texels of the first level.
@@ -194,7 +202,7 @@ impl<'a> Sampler<'a> {
         let mut probe = 0.0;
         // Sampling is compiled once for both filters.
         loop {
-            if most > 1.0 {
+            if most > 1.0 || self.clamps_probes() {
                 self.go_to_probe(simd, places, len, (probe, &middle));
             }
             self.mix_levels::<S, D>(simd, places, (len, &same), to);
@@ -213,8 +221,8 @@ impl<'a> Sampler<'a> {
         }
     }
 
-    /// Moves each place from the middle of its pixel to a sample. Missing samples repeat the last
-    /// one.
+    /// Moves each place from the middle of its pixel to a sample, and wraps it. Missing samples
+    /// repeat the last one.
     #[inline(always)]
     fn go_to_probe<S: Simd>(
         &self,

@@ -31,11 +31,16 @@ pub(crate) fn sample_as<T: Number>(
     if size.area() == 0 {
         return [T::from_f64(1.0); 4];
     }
-    let u = wrapped(uv[0] * texture.scale[0] + texture.offset[0], texture.wrap);
-    let v = wrapped(uv[1] * texture.scale[1] + texture.offset[1], texture.wrap);
-    // The position in texels, from the lower left corner of the picture.
+    // The position in texels, from the lower left corner of the picture. The offset comes before
+    // clamping: next to a clamped texture, it must not lead back inside.
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
-    let (x, y) = (u * size.width as f64 + beside[0], v * size.height as f64 + beside[1]);
+    let [x, y] = [(0, size.width as f64), (1, size.height as f64)].map(|(axis, side)| {
+        let own = uv[axis] * texture.scale[axis] + texture.offset[axis];
+        match texture.wrap {
+            Wrap::Repeat => wrapped(own, Wrap::Repeat) * side + beside[axis],
+            Wrap::Clamp => wrapped(own + beside[axis] / side, Wrap::Clamp) * side,
+        }
+    });
     let texel = |column: i64, row: i64| {
         let column = bring(column, size.width, texture.wrap);
         // Rows of the picture run down, texture coordinates up.
