@@ -192,6 +192,24 @@ fn normals_transformed_by_the_objects_own_matrix_lean_by_79_degrees() {
     assert!((apart - 78.58).abs() < 1.0, "{apart}");
 }
 
+/// A two-sided sheet, seen from behind, of which a normal transformed like the surface says the
+/// opposite.
+#[test]
+fn normals_of_light_do_not_decide_which_side_is_seen() {
+    let turn = DMat4::from_rotation_y(0.25 * std::f64::consts::PI);
+    let stretch = DMat4::from_scale(DVec3::new(1.0, 1.0, 10.0));
+    let placed = at(20.0, 0.0, 0.0, 0.0) * turn * stretch * turn;
+    let (mut scene, view) = scene(&[(square(), placed)]);
+    edit(&mut scene, FIRST, |object| object.sides = Sides::Two);
+    let seen = |stretched| {
+        let settings = Settings { stretched, ..Settings::default() };
+        primitives(&scene, &unmarked(view.clone()), &settings, 100)
+    };
+    let right = seen(NormalMatrix::Cofactor);
+    assert!(right.iter().any(|primitive| *primitive != 0));
+    assert!(seen(NormalMatrix::AsItIs) == right);
+}
+
 #[test]
 fn cut_off_colours_are_half_a_step_too_dark_and_a_pattern_keeps_the_mean() {
     let opened = lesson_scene("dusk").unwrap();

@@ -2,7 +2,7 @@
 //! floor, a leaf. A closed shape never qualifies, so larger meshes are not examined.
 
 use crate::accel::Accelerated as _;
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use crate::frame::Viewport;
 use crate::frame::draw::{Back, Draw};
@@ -60,7 +60,8 @@ fn shows_front(draw: &Draw, polygon: u32, projection: Projection) -> bool {
     }
     // Corners of a flat polygon leave its plane only by rounding.
     let is_flat = height <= 1e-6 * size.sqrt();
-    let normal = draw.view_from_normal * normal;
+    // Not the normals of light, which lean if they are transformed like the surface.
+    let normal = math::normal_matrix(DMat3::from_mat4(draw.view_from_object)) * normal;
     let to_observer = match projection {
         Projection::Perspective => -draw.view_from_object.transform_point3(middle),
         Projection::Orthographic => DVec3::Z,

@@ -2,9 +2,9 @@
 //!
 //! With light per face, a triangle has the same colour everywhere. A table of the frame, shared by
 //! all threads, holds the colours by triangle number. Before a tile is coloured, its triangles that
-//! are not in the table are lit, a batch at a time; then its pixels are looked up. No thread waits for
-//! another: pixels of a triangle that another thread is about to light are shaded from lists, and if
-//! two threads light the same triangle, both compute the same colour.
+//! are not in the table are lit, a batch at a time; then its pixels are looked up. No thread waits
+//! for another: pixels of a triangle that another thread is about to light are shaded from lists,
+//! and if two threads light the same triangle, both compute the same colour.
 
 use std::hint::select_unpredictable;
 use std::sync::atomic::{AtomicU32, Ordering};
