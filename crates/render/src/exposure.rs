@@ -13,6 +13,9 @@ use marraztu_core::scene::View;
 /// The share of a picture's surface that may be clamped: highlights are meant to be white.
 const CLAMPED: f64 = 0.01;
 
+/// The least alpha of a pixel that counts. A smaller one leaves its colour too few digits.
+const LEAST_ALPHA: u8 = 16;
+
 /// The target brightness of the brightest surfaces, in steps of a byte.
 const JUST_BELOW_WHITE: f64 = 250.0;
 
@@ -63,8 +66,8 @@ pub fn fitted_exposure(shot: &Shot) -> f64 {
 )]
 fn brightest(renderer: &mut Renderer, shot: &Shot) -> Option<f64> {
     let picture = without_ground(renderer, shot);
-    // Only fully covered pixels count: edges are mixed with the background.
-    let shown = picture.pixels().iter().filter(|pixel| pixel[3] == 255);
+    // Transparent surfaces count with their own colour, without the background behind them.
+    let shown = picture.pixels().iter().filter(|pixel| pixel[3] >= LEAST_ALPHA);
     let mut bright: Vec<u8> = shown.map(|[r, g, b, _]| *r.max(g).max(b)).collect();
     bright.sort_unstable_by(|a, b| b.cmp(a));
     let skipped = (bright.len() as f64 * CLAMPED) as usize;
@@ -118,6 +121,24 @@ mod tests {
                 let shown = Renderer::default().render(&plan_frame(&shot)).pixel(2, 2)[0];
                 assert!((244..255).contains(&shown), "{light_values:?} {marks}: {shown}");
             }
+        }
+    }
+
+    #[test]
+    fn glass_is_fitted_like_an_opaque_surface() {
+        let (mut scene, view) = grey_wall();
+        let view = View { marks: false, ..view };
+        let mut fitted = |opacity: f64| {
+            let wall = scene.objects.get(ObjectId(10)).unwrap();
+            let wall = Object { opacity, ..wall.clone() };
+            scene.objects = List::from_iter([(ObjectId(10), wall)]);
+            fitted_exposure(&Shot::new(&scene, &view, &Settings::default(), Size::new(32, 32)))
+        };
+        let opaque = fitted(1.0);
+        assert!(opaque.abs() > 0.1, "{opaque}");
+        for opacity in [0.99, 0.5, 0.1] {
+            let glass = fitted(opacity);
+            assert!((glass - opaque).abs() < 0.08, "{opacity}: {glass}, opaque {opaque}");
         }
     }
 
