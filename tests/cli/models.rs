@@ -127,6 +127,25 @@ fn a_picture_that_shows_nothing_of_an_object_says_why() {
 }
 
 #[test]
+fn a_transparent_part_shows_no_edges_of_opaque_faces_that_are_turned_away() {
+    let folder = folder();
+    let [left, right] = ["v -3 0 0\nv -1 0 0\nv -2 2 0\n", "v 1 0 0\nv 3 0 0\nv 2 2 0\n"];
+    let faces = "usemtl solid\nf 1 3 2\nusemtl glass\nf 4 5 6\n";
+    let text = format!("mtllib two.mtl\n{left}{right}{faces}");
+    std::fs::write(folder.path().join("two.obj"), text).unwrap();
+    let materials = "newmtl solid\nKd 1 0 0\nnewmtl glass\nKd 0 1 0\nd 0.5\n";
+    std::fs::write(folder.path().join("two.mtl"), materials).unwrap();
+    let picture = drawn(folder.path(), &["two.obj", "--sides", "one", "--edges-over"]);
+    let behind = Scene::NEUTRAL.opaque();
+    let shown = |columns: std::ops::Range<usize>| {
+        let pixels = columns.flat_map(|x| (0..120).map(move |y| (x, y)));
+        pixels.filter(|(x, y)| picture.pixel(*x, *y) != behind).count()
+    };
+    assert_eq!(shown(0..80), 0, "the back of the left triangle");
+    assert!(shown(80..160) > 200);
+}
+
+#[test]
 fn normals_of_the_file_can_be_ignored() {
     let folder = folder();
     let text = SQUARE.replace("f 1 2 3 4", "vn 1 0 1\nf 1//1 2//1 3//1 4//1");

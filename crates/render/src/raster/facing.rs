@@ -1,8 +1,8 @@
 //! Finds the colour of polygon outlines.
 //!
 //! The colour depends on the side that the observer sees, given by the sign of the area on the
-//! screen. If all polygons are triangles, sixteen are computed at a time in draw order; other
-//! polygons are computed one by one.
+//! screen. If all polygons are triangles, and all back faces are treated alike, sixteen are computed
+//! at a time in draw order; other polygons are computed one by one.
 
 use crate::accel::Accelerated as _;
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -14,8 +14,8 @@ use super::hits::PACK;
 use super::setup::NARROW;
 use super::vertices::fetch_corners;
 use crate::accel::DrawTriangle;
-use crate::frame::Viewport;
-use crate::frame::draw::{Back, Draw};
+use crate::frame::FramePlan;
+use crate::frame::draw::{Back, Draw, Pipeline};
 use crate::screen::clip::{Screen, ScreenVertex};
 use crate::screen::coverage::doubled_area;
 use marraztu_core::scene::Mesh;
@@ -47,6 +47,7 @@ impl Outline {
 #[derive(Debug)]
 pub(crate) struct Facing<'a> {
     draw: &'a Draw,
+    pipelines: &'a [Pipeline],
     mesh: &'a Mesh,
     vertices: &'a [ScreenVertex],
     screen: Screen,
@@ -55,7 +56,7 @@ pub(crate) struct Facing<'a> {
 }
 
 impl<'a> Facing<'a> {
-    pub(crate) fn new(draw: &'a Draw, vertices: &'a [ScreenVertex], viewport: Viewport) -> Self {
+    pub(crate) fn new(plan: &'a FramePlan, draw: &'a Draw, vertices: &'a [ScreenVertex]) -> Self {
         let back = match draw.back {
             Back::Lit => Outline::Own,
             Back::Red => Outline::Back,
@@ -63,8 +64,9 @@ impl<'a> Facing<'a> {
         };
         // Front faces have a negative area, or a positive one if mirrored.
         let outlines = if draw.mirrored { [back, Outline::Own] } else { [Outline::Own, back] };
-        let screen = Screen::new(draw.clip_from_object, viewport);
-        Self { draw, mesh: &draw.model.mesh, vertices, screen, outlines }
+        let screen = Screen::new(draw.clip_from_object, plan.viewport);
+        let (mesh, pipelines) = (&draw.model.mesh, &plan.pipelines[..]);
+        Self { draw, pipelines, mesh, vertices, screen, outlines }
     }
 
     /// Finds the outlines of polygons that are single triangles.
@@ -123,11 +125,19 @@ impl<'a> Facing<'a> {
         let triangles = self.mesh.triangles_of(polygon);
         let number = |i: usize| u32::try_from(i).expect("triangles have 32-bit numbers");
         let area: i64 = triangles.map(|triangle| self.area_on_screen(number(triangle))).sum();
+        let is_back = (area > 0) != self.draw.mirrored;
         match area {
-            ..0 => self.outlines[0],
             0 => Outline::Not,
+            _ if is_back && self.draw.culls_opaque && !self.is_transparent(polygon) => Outline::Not,
+            ..0 => self.outlines[0],
             1.. => self.outlines[1],
         }
+    }
+
+    fn is_transparent(&self, polygon: u32) -> bool {
+        let part = self.mesh.polygon_parts()[polygon as usize];
+        let pipeline = self.draw.part_pipelines[part as usize];
+        pipeline.is_some_and(|pipeline| self.pipelines[pipeline as usize].opacity().is_some())
     }
 
     /// Computes twice the area of a triangle on the screen after clipping, in square subpixels.

@@ -240,7 +240,7 @@ impl ScreenGeometry {
             if draw.filled {
                 add(What::Triangles, triangles);
             }
-            if draw.lines.edges && mesh.edge_order().triangles {
+            if draw.lines.edges && mesh.edge_order().triangles && !draw.culls_opaque {
                 add(What::Facing, triangles);
             } else if draw.lines.edges {
                 add(What::FacingOneByOne, mesh.polygon_count());

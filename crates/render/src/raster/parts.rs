@@ -84,11 +84,11 @@ impl Parts<'_> {
             }
             What::Facing => {
                 let triangles = &mesh.draw_order().triangles[from..to];
-                let facing = Facing::new(draw, vertices, plan.viewport);
+                let facing = Facing::new(plan, draw, vertices);
                 facing.of_triangles(level, triangles, outlines);
             }
             What::FacingOneByOne => {
-                let facing = Facing::new(draw, vertices, plan.viewport);
+                let facing = Facing::new(plan, draw, vertices);
                 (from..to).for_each(|polygon| facing.one(number(polygon), outlines));
             }
             What::Normals => {
