@@ -130,6 +130,33 @@ fn a_texture_without_texture_coordinates_is_left_out() {
 }
 
 #[test]
+fn faces_without_texture_coordinates_show_no_texture_next_to_faces_that_have_them() {
+    let folder = tempfile::tempdir().unwrap();
+    put_picture(folder.path(), "t.png", 2, |_, _| [1, 2, 3, 100]);
+    let mtl = "newmtl m\nKd .5 .25 1\nKs 0 0 0\nmap_Kd t.png\nmap_d t.png\nnewmtl plain\n";
+    // A mapped square, one that is not, one of which one triangle is; and both without a texture.
+    let faces = "usemtl m\nf 1/1 2/2 3/3 4/4\nf 1 2 3 4\nf 1/1 2/2 3/3 4\n\
+                 usemtl plain\nf 1/1 2/2 3/3\nf 1 3 4\n";
+    put(folder.path(), &[("a.obj", &format!("{SQUARE}{faces}")), ("a.mtl", mtl)]);
+    runs(folder.path(), &["export", "a.obj", "--out", "b.gltf"]);
+    let gltf = read(&folder.path().join("b.gltf"));
+    let list = |value: &Value| value.as_array().unwrap().clone();
+    let materials = list(&gltf["materials"]).into_iter().map(|material| {
+        let has_texture = !material["pbrMetallicRoughness"]["baseColorTexture"].is_null();
+        (material["name"].clone(), has_texture, material["alphaMode"] == "BLEND")
+    });
+    let expected = [("m", true, true), ("m.001", false, false), ("plain", false, false)];
+    assert!(materials.eq(expected.map(|(name, texture, fades)| (json!(name), texture, fades))));
+    let primitives = list(&gltf["meshes"][0]["primitives"]).into_iter().map(|primitive| {
+        let indices = usize::try_from(primitive["indices"].as_u64().unwrap()).unwrap();
+        (primitive["material"].clone(), gltf["accessors"][indices]["count"].clone())
+    });
+    assert!(
+        primitives.eq([(0, 9), (1, 9), (2, 6)].map(|(look, count)| (json!(look), json!(count))))
+    );
+}
+
+#[test]
 fn maps_that_are_laid_out_differently_have_texture_coordinates_each() {
     let folder = tempfile::tempdir().unwrap();
     put_picture(folder.path(), "t.png", 2, |_, _| [128, 128, 255, 255]);

@@ -15,9 +15,9 @@ use super::gltf::Writer;
 use super::gltf_buffer::{Vertex, Vertices, columns, is_single, single, single3};
 use super::gltf_surface::linear;
 use super::gltf_texture::{Layout, layouts};
-use super::look::{has_colors, polygons};
+use super::look::{Maps, has_colors, polygons};
 use marraztu_core::base::math;
-use marraztu_core::scene::{MapKind, Mesh, NONE, NormalSource, Object, dvec3};
+use marraztu_core::scene::{MapKind, Mesh, NONE, NormalSource, Object, Triangle, dvec3};
 
 /// The largest scale of a placement that is written as a matrix: its entries are then accurate to
 /// 1e-6.
@@ -29,15 +29,16 @@ type Name<'a> = Option<&'a str>;
 /// The meshes of an object of a file, each with its group.
 type Groups<'a> = Vec<(Name<'a>, Index<gltf_json::Mesh>)>;
 
-/// The polygons of an object, by piece and look.
+/// The triangles of an object, by piece and look.
 #[derive(Default)]
 struct Sorted<'a> {
     /// The objects and groups of the file, in the order of their first faces.
     pieces: Vec<(Name<'a>, Name<'a>)>,
     numbers: HashMap<(Name<'a>, Name<'a>), usize>,
-    /// The piece and the look of each part, filled in when a face uses it.
-    parts: HashMap<u32, (usize, usize)>,
-    polygons: BTreeMap<(usize, usize), Vec<u32>>,
+    /// The piece and the look of each part, with and without maps, filled in when a triangle uses
+    /// it.
+    parts: HashMap<(u32, Maps), (usize, usize)>,
+    triangles: BTreeMap<(usize, usize), Vec<usize>>,
 }
 
 impl Writer<'_> {
@@ -102,10 +103,10 @@ impl Writer<'_> {
     /// Writes the meshes of an object, by the objects and groups of its file.
     fn meshes<'a>(&mut self, object: &'a Object, baked: &DMat4) -> Vec<(Name<'a>, Groups<'a>)> {
         // One primitive per piece and look, since a primitive has one material.
-        let Sorted { pieces, polygons, .. } = self.sorted(object);
+        let Sorted { pieces, triangles, .. } = self.sorted(object);
         let mut by_piece: Vec<Vec<Primitive>> = pieces.iter().map(|_| Vec::new()).collect();
-        for ((piece, look), polygons) in polygons {
-            by_piece[piece].extend(self.primitive(object, baked, look, &polygons));
+        for ((piece, look), triangles) in triangles {
+            by_piece[piece].extend(self.primitive(object, baked, look, &triangles));
         }
         let mut objects: Vec<(Name<'a>, Groups<'a>)> = Vec::new();
         let mut numbers = HashMap::new();
@@ -133,31 +134,34 @@ impl Writer<'_> {
     fn sorted<'a>(&mut self, object: &'a Object) -> Sorted<'a> {
         let mesh = &object.model.mesh;
         let mut sorted = Sorted::default();
-        for polygon in polygons(object) {
+        for triangle in polygons(object).flat_map(|polygon| mesh.triangles_of(polygon)) {
+            let Triangle { corners, polygon, .. } = mesh.triangles()[triangle];
             let part = mesh.polygon_parts()[polygon as usize];
+            let has_uvs = corners.iter().all(|it| mesh.corners()[*it as usize].uv != NONE);
+            let maps = if has_uvs { Maps::Kept } else { Maps::LeftOut };
             let Sorted { pieces, numbers, parts, .. } = &mut sorted;
             // Looks are expensive to build, so each part is resolved once.
-            let key = *parts.entry(part).or_insert_with(|| {
+            let key = *parts.entry((part, maps)).or_insert_with(|| {
                 let names = mesh.part_names(part);
                 let names = (names.object.as_deref(), names.group.as_deref());
                 let piece = *numbers.entry(names).or_insert_with(|| {
                     pieces.push(names);
                     pieces.len() - 1
                 });
-                (piece, self.looks.of_part(object, part))
+                (piece, self.looks.of_part(object, part, maps))
             });
-            sorted.polygons.entry(key).or_default().push(polygon);
+            sorted.triangles.entry(key).or_default().push(triangle);
         }
         sorted
     }
 
-    /// Writes the triangles of polygons that share a look.
+    /// Writes triangles that share a look.
     fn primitive(
         &mut self,
         object: &Object,
         baked: &DMat4,
         look: usize,
-        polygons: &[u32],
+        triangles: &[usize],
     ) -> Option<Primitive> {
         let mesh = &object.model.mesh;
         let is_mirrored = DMat3::from_mat4(*baked).determinant() < 0.0;
@@ -168,13 +172,13 @@ impl Writer<'_> {
         // Corners become vertices: glTF has one index for all attributes.
         let mut vertices = Vertices::default();
         let mut indices = Vec::new();
-        for triangle in polygons.iter().flat_map(|polygon| mesh.triangles_of(*polygon)) {
+        for triangle in triangles {
             let mut corners = std::array::from_fn(|i| {
-                let corner = mesh.corners()[mesh.triangles()[triangle].corners[i] as usize];
+                let corner = mesh.corners()[mesh.triangles()[*triangle].corners[i] as usize];
                 vertices.number(Vertex {
                     point: if object.file_normals { corner.filed } else { corner.smooth },
                     uv: corner.uv,
-                    tangent: tangents.map_or([0; 4], |all| all[triangle][i].map(f32::to_bits)),
+                    tangent: tangents.map_or([0; 4], |all| all[*triangle][i].map(f32::to_bits)),
                 })
             });
             // A baked mirror reverses the winding, which would swap front and back.

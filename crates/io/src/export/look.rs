@@ -55,9 +55,16 @@ impl Look {
 pub(super) enum Detail {
     /// MTL does not store whether faces are two-sided.
     Mtl,
-    /// glTF materials may be two-sided, and lose their textures on a mesh without texture
-    /// coordinates.
+    /// glTF materials may be two-sided.
     Gltf,
+}
+
+/// Whether a look has the textures of its material.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Maps {
+    Kept,
+    /// glTF shows textures only on faces with texture coordinates.
+    LeftOut,
 }
 
 /// The distinct looks of a scene.
@@ -108,10 +115,10 @@ impl Looks {
     }
 
     /// Returns the index of a part's look.
-    pub(super) fn of_part(&mut self, object: &Object, part: u32) -> usize {
+    pub(super) fn of_part(&mut self, object: &Object, part: u32, maps: Maps) -> usize {
         let file = file_material(object, part);
         let asked = object.model.mesh.part_names(part).material.as_deref();
-        self.number(object, file, asked)
+        self.number(object, file, asked, maps)
     }
 
     /// Adds the looks of all materials of the object's file, in order. Materials that only hidden
@@ -128,7 +135,7 @@ impl Looks {
         }
         for (number, file) in (0..).zip(&object.model.materials) {
             if shown.contains(&number) || !hidden.contains(&number) {
-                self.number(object, Some(file), None);
+                self.number(object, Some(file), None, Maps::Kept);
             }
         }
     }
@@ -138,8 +145,9 @@ impl Looks {
         object: &Object,
         file: Option<&FileMaterial>,
         asked: Option<&str>,
+        maps: Maps,
     ) -> usize {
-        let mut look = self.look(object, file, asked);
+        let mut look = self.look(object, file, asked, maps);
         let key = Key::of(&look);
         *self.numbers.entry(key).or_insert_with(|| {
             look.name = self.names.take(&look.name);
@@ -149,7 +157,13 @@ impl Looks {
     }
 
     /// Builds a look with its wanted name.
-    fn look(&self, object: &Object, file: Option<&FileMaterial>, asked: Option<&str>) -> Look {
+    fn look(
+        &self,
+        object: &Object,
+        file: Option<&FileMaterial>,
+        asked: Option<&str>,
+        maps: Maps,
+    ) -> Look {
         // The material as drawn: the object's choice overrides the file's.
         let shown = object.material_look(file);
         let of_file = object.material == MaterialChoice::File;
@@ -163,9 +177,7 @@ impl Looks {
             (material.diffuse, material.specular) = (tint, [0.0; 3]);
             material.emission = [0.0; 3];
         }
-        // glTF ties textures to texture coordinates; MTL can name them anyway.
-        let mesh = &object.model.mesh;
-        let is_mapped = self.detail == Detail::Mtl || !mesh.uvs().is_empty();
+        let is_mapped = maps == Maps::Kept;
         let texture = shown.texture.filter(|_| is_mapped).cloned();
         let is_painted = texture.is_some() || (has_colors(object) && self.detail == Detail::Gltf);
         let is_nameless = of_file && file.is_none();

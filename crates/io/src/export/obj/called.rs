@@ -7,7 +7,7 @@
 use std::collections::{BTreeSet, HashMap};
 use std::fmt::Write;
 
-use crate::export::look::{Looks, file_material, tint};
+use crate::export::look::{Looks, Maps, file_material, tint};
 use crate::export::names::{self, on_one_line};
 use marraztu_core::scene::{MaterialChoice, Object, PartNames, Surface};
 
@@ -131,7 +131,7 @@ impl Names {
                 asked.map(str::to_owned)
             }
             _ => {
-                let number = looks.of_part(object, part);
+                let number = looks.of_part(object, part, Maps::Kept);
                 Some(looks.all[number].name.clone())
             }
         };
