@@ -113,6 +113,87 @@ fn a_map_of_opacity_is_in_the_alpha_of_the_texture() {
     }
 }
 
+/// Returns the pairs of floats of an accessor.
+fn pairs(path: &Path, gltf: &Value, accessor: &Value) -> Vec<[f64; 2]> {
+    let number = |value: &Value| usize::try_from(value.as_u64().unwrap()).unwrap();
+    let view = &gltf["bufferViews"][number(&gltf["accessors"][number(accessor)]["bufferView"])];
+    let (start, length) = (number(&view["byteOffset"]), number(&view["byteLength"]));
+    let bytes = std::fs::read(path.with_extension("bin")).unwrap();
+    let (floats, _) = bytes[start..start + length].as_chunks();
+    let floats: Vec<f64> = floats.iter().map(|it| f64::from(f32::from_le_bytes(*it))).collect();
+    floats.as_chunks().0.to_vec()
+}
+
+#[test]
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the picture")]
+fn texture_and_map_of_opacity_keep_their_places_whatever_their_layouts() {
+    const SIDE: usize = 16;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("b.gltf");
+    // Quarters of different colours, and of different opacity.
+    let quarter = |x: bool, y: bool| [u8::from(x) * 255, u8::from(y) * 255, 9, 255];
+    let opacity = |x: bool, y: bool| [255, 200, 100, 0][usize::from(x) + 2 * usize::from(y)];
+    let right = |x: usize| x >= SIDE / 2;
+    put_picture(folder.path(), "t.png", SIDE, |x, y| quarter(right(x), right(y)));
+    put_picture(folder.path(), "d.png", SIDE, |x, y| grey(opacity(right(x), right(y))));
+
+    // Scale and offset of both, and whether they are clamped.
+    let rows = [
+        ([4.0, 4.0], [0.0; 2], [1.0, 1.0], [0.0; 2], "off"),
+        ([4.0, 4.0], [0.125, 0.5], [1.0, 2.0], [0.25, 0.0], "off"),
+        ([2.0, 3.0], [0.0; 2], [3.0, 2.0], [0.0; 2], "off"),
+        ([-2.0, 1.0], [0.25, 0.0], [1.0, 0.3333], [0.5, 0.0], "off"),
+        ([0.0, 1.0], [0.25, 0.0], [2.0, 0.0], [0.0, 0.25], "off"),
+        ([4.0, -2.0], [0.0, 1.5], [1.0, 3.0], [0.0; 2], "on"),
+        ([1.0, 1.0], [0.0; 2], [1.0, 1.0], [0.5, -1.0], "on"),
+    ];
+    for (scale, offset, map_scale, map_offset, clamp) in rows {
+        let options = |[s, t]: [f64; 2], [u, v]: [f64; 2]| {
+            format!("-s {s} {t} 1 -o {u} {v} 0 -clamp {clamp}")
+        };
+        let of_texture = options(scale, offset);
+        let of_map = options(map_scale, map_offset);
+        let maps = format!("map_Kd {of_texture} t.png\nmap_d {of_map} d.png");
+        let gltf = exported(folder.path(), &format!("Kd 1 1 1\nKs 0 0 0\n{maps}"));
+        let merged = image(&path, &gltf, 0);
+        let uvs = &gltf["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"];
+        let uvs = pairs(&path, &gltf, uvs);
+        // The half of a picture at a point of the surface; `None` near the middle and the borders.
+        let half = |at: f64, scale: f64, offset: f64| {
+            let at = at * scale + offset;
+            let at = if clamp == "on" { at.clamp(0.2, 0.8) } else { at.rem_euclid(1.0) };
+            let is_near = [0.0, 0.5, 1.0].into_iter().any(|edge| (at - edge).abs() < 0.1);
+            (!is_near).then_some(at >= 0.5)
+        };
+        // Pictures begin at the top.
+        let halves = |at: [f64; 2], scale: [f64; 2], offset: [f64; 2]| {
+            let [x, y] = [0, 1].map(|i| half(at[i], scale[i], offset[i]));
+            Some((x?, !y?))
+        };
+        let texel = |at: f64, count: usize| {
+            let at = if clamp == "on" { at.clamp(0.0, 1.0) } else { at.rem_euclid(1.0) };
+            ((at * count as f64) as usize).min(count - 1)
+        };
+        let mut seen = 0;
+        for i in 0..29 * 29 {
+            let at = [i % 29, i / 29].map(|i| f64::from(i) / 29.0);
+            let (Some((x, y)), Some((over, under))) =
+                (halves(at, scale, offset), halves(at, map_scale, map_offset))
+            else {
+                continue;
+            };
+            seen += 1;
+            // The first vertex is at (0, 0), the third at (1, 1).
+            let place = |i: usize| uvs[0][i] + (uvs[2][i] - uvs[0][i]) * at[i];
+            let size = merged.size();
+            let pixel = merged.pixel(texel(place(0), size.width), texel(place(1), size.height));
+            let [r, g, b, _] = quarter(x, y);
+            assert_eq!(pixel, [r, g, b, opacity(over, under)], "{maps} at {at:?}: {size:?}");
+        }
+        assert!(seen > 50, "{maps}: {seen}");
+    }
+}
+
 #[test]
 fn a_texture_without_texture_coordinates_is_left_out() {
     let folder = tempfile::tempdir().unwrap();

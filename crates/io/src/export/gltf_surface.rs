@@ -30,6 +30,11 @@ impl Writer<'_> {
             }
             self.root.push(surface(look, infos));
         }
+        if textures.approximated {
+            let text = "glTF has one texture for colour and opacity: an opacity map that repeats \
+                        differently from its texture is approximated";
+            self.notes.push(text.to_owned());
+        }
         self.images(textures)
     }
 }

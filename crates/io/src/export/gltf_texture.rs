@@ -1,31 +1,27 @@
 //! The textures of glTF, and their mapping onto surfaces.
 //!
 //! glTF stores the opacity of a surface in the alpha of its texture, so an opacity map is merged
-//! into the texture. Offset and scale are applied to the texture coordinates. Maps with different
-//! layouts get several sets of coordinates, because more readers support sets than the extension
-//! for transforms.
+//! into the texture ([`gltf_opacity`](super::gltf_opacity)). Offset and scale are applied to the
+//! texture coordinates. Maps with different layouts get several sets of coordinates, because more
+//! readers support sets than the extension for transforms.
 
 use std::collections::HashMap;
 
 use gltf_json::validation::Checked;
 use gltf_json::{Index, image, texture};
-use rayon::prelude::*;
 
 use super::gltf::Writer;
 use super::gltf_buffer::single;
+use super::gltf_opacity::{Merging, white_with};
 use super::look::{Look, Pictures};
 use marraztu_core::base::Shared;
-use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{MapKind, Texture, Wrap};
-
-/// The most texels of a texture that is merged from two of different sizes.
-const MOST_TEXELS: usize = 1 << 26;
 
 /// The offset and scale of a texture on a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Layout {
-    offset: [f64; 2],
-    scale: [f64; 2],
+    pub(super) offset: [f64; 2],
+    pub(super) scale: [f64; 2],
 }
 
 impl Default for Layout {
@@ -35,7 +31,7 @@ impl Default for Layout {
 }
 
 impl Layout {
-    fn of(texture: &Texture) -> Self {
+    pub(super) fn of(texture: &Texture) -> Self {
         Self { offset: texture.offset, scale: texture.scale }
     }
 
@@ -48,11 +44,14 @@ impl Layout {
 
 /// Returns the layouts of a look's textures, in the order of a vertex's texture coordinates.
 pub(super) fn layouts(look: &Look) -> Vec<Layout> {
-    let map = |kind| look.map(kind).map(|map| &map.texture);
-    let base = look.texture.as_ref().or_else(|| map(MapKind::Opacity));
+    let map = |kind| look.map(kind).map(|map| &*map.texture);
+    let base = match (look.texture.as_deref(), map(MapKind::Opacity)) {
+        (Some(texture), Some(map)) => Some(Merging::of(texture, map).layout),
+        (texture, map) => texture.or(map).map(Layout::of),
+    };
+    let others = [MapKind::Emission, MapKind::Normal].map(|kind| map(kind).map(Layout::of));
     let mut layouts = Vec::new();
-    for texture in [base, map(MapKind::Emission), map(MapKind::Normal)].into_iter().flatten() {
-        let layout = Layout::of(texture);
+    for layout in base.into_iter().chain(others.into_iter().flatten()) {
         if !layouts.contains(&layout) {
             layouts.push(layout);
         }
@@ -92,6 +91,8 @@ pub(super) struct Textures {
     samplers: HashMap<Wrap, Index<texture::Sampler>>,
     /// Textures merged with opacity maps, by both keys.
     merged: HashMap<[Option<TextureKey>; 2], Shared<Texture>>,
+    /// Whether a merged texture is an approximation.
+    pub(super) approximated: bool,
 }
 
 /// The picture, wrapping and layout of a texture.
@@ -197,94 +198,20 @@ impl Textures {
         map: Option<&Shared<Texture>>,
     ) -> Option<Shared<Texture>> {
         let Some(map) = map else { return texture.cloned() };
-        if let Some(texture) = texture {
-            let is_same = key(texture) == key(map) && map.picture.least_alpha() < 255;
-            if is_same || map.picture.pixels().iter().all(|pixel| *pixel == [255; 4]) {
-                return Some(texture.clone());
-            }
-        }
         let keys = [texture.map(|texture| key(texture)), Some(key(map))];
-        let merged = self.merged.entry(keys);
-        Some(merged.or_insert_with(|| Shared::new(merged_texture(texture, map))).clone())
-    }
-}
-
-/// Multiplies a texture's alpha by an opacity map: by its alpha, or by its luminance if the map is
-/// opaque. The result has the larger width and height, up to [`MOST_TEXELS`].
-fn merged_texture(texture: Option<&Shared<Texture>>, map: &Texture) -> Texture {
-    let by_brightness = map.picture.least_alpha() == 255;
-    let opacity = |[r, g, b, alpha]: [f64; 4]| {
-        if by_brightness { 0.2126 * r + 0.7152 * g + 0.0722 * b } else { alpha }
-    };
-    let Some(texture) = texture else {
-        let white = |pixel: &[u8; 4]| [255, 255, 255, byte(opacity(pixel.map(f64::from)))];
-        let pixels = map.picture.pixels().iter().map(white).collect();
-        return with_pixels(map, map.picture.size(), pixels);
-    };
-    // The pictures may differ in size and layout, so both are sampled at the same surface point.
-    let (own, other) = (texture.picture.size(), map.picture.size());
-    let larger = Size::new(own.width.max(other.width), own.height.max(other.height));
-    let size = if larger.area() <= MOST_TEXELS { larger } else { own };
-    let mut pixels = vec![[0; 4]; size.area()];
-    let rows = pixels.par_chunks_mut(size.width.max(1)).enumerate();
-    rows.for_each(|(y, row)| {
-        for (x, pixel) in row.iter_mut().enumerate() {
-            let at = [middle(x, size.width), 1.0 - middle(y, size.height)];
-            let [r, g, b, alpha] = sample(&texture.picture, texture.wrap, at);
-            let over = opacity(sample(&map.picture, map.wrap, moved(texture, map, at)));
-            *pixel = [r, g, b, alpha * over / 255.0].map(byte);
+        let merging = texture.map(|texture| (texture, Merging::of(texture, map)));
+        if let Some((texture, merging)) = &merging {
+            let is_same = keys[0] == keys[1] && map.picture.least_alpha() < 255;
+            let is_white = || map.picture.pixels().iter().all(|pixel| *pixel == [255; 4]);
+            if is_same || (merging.layout == Layout::of(texture) && is_white()) {
+                return Some((*texture).clone());
+            }
+            self.approximated |= !merging.is_exact;
         }
-    });
-    with_pixels(texture, size, pixels)
-}
-
-fn with_pixels(like: &Texture, size: Size, pixels: Vec<[u8; 4]>) -> Texture {
-    let picture = Picture::from_pixels(size, pixels).unwrap_or_default();
-    Texture { picture: Shared::new(picture), ..like.clone() }
-}
-
-/// Returns the centre of a texel, from 0 to 1.
-#[expect(clippy::cast_precision_loss, reason = "pictures have fewer rows than 2^52")]
-fn middle(i: usize, count: usize) -> f64 {
-    (i as f64 + 0.5) / count as f64
-}
-
-/// Converts coordinates in a texture to coordinates in a map at the same point of the surface.
-fn moved(texture: &Texture, map: &Texture, at: [f64; 2]) -> [f64; 2] {
-    std::array::from_fn(|i| {
-        if texture.scale[i] == map.scale[i] || texture.scale[i] == 0.0 {
-            return at[i] - texture.offset[i] + map.offset[i];
-        }
-        (at[i] - texture.offset[i]) / texture.scale[i] * map.scale[i] + map.offset[i]
-    })
-}
-
-/// Samples a picture with bilinear filtering; (0, 0) is its lower left corner.
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the picture")]
-#[expect(clippy::cast_precision_loss, reason = "pictures have fewer rows than 2^52")]
-fn sample(picture: &Picture, wrap: Wrap, [u, v]: [f64; 2]) -> [f64; 4] {
-    let size = picture.size();
-    // Texel centres are at half integers.
-    let along = |x: f64, count: usize| {
-        let (x, count) = (x * count as f64 - 0.5, count as f64);
-        let texel = |x: f64| match wrap {
-            Wrap::Repeat => x.rem_euclid(count).min(count - 1.0) as usize,
-            Wrap::Clamp => x.clamp(0.0, count - 1.0) as usize,
+        let merged = || match merging {
+            Some((texture, merging)) => merging.merged(texture, map),
+            None => white_with(map),
         };
-        let first = x.floor();
-        (texel(first), texel(first + 1.0), x - first)
-    };
-    let (left, right, across) = along(u, size.width);
-    let (upper, lower, down) = along(1.0 - v, size.height);
-    let row = |y| {
-        let [a, b] = [left, right].map(|x| picture.pixel(x, y).map(f64::from));
-        std::array::from_fn(|i| a[i] + (b[i] - a[i]) * across)
-    };
-    let [a, b]: [[f64; 4]; 2] = [upper, lower].map(row);
-    std::array::from_fn(|i| a[i] + (b[i] - a[i]) * down)
-}
-
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 255")]
-fn byte(x: f64) -> u8 {
-    x.round().clamp(0.0, 255.0) as u8
+        Some(self.merged.entry(keys).or_insert_with(|| Shared::new(merged())).clone())
+    }
 }

@@ -7,6 +7,7 @@ mod gltf;
 mod gltf_buffer;
 mod gltf_lights;
 mod gltf_mesh;
+mod gltf_opacity;
 mod gltf_surface;
 mod gltf_texture;
 mod look;
