@@ -231,6 +231,13 @@ fn faces_of_one_group_are_smooth_and_faces_without_one_are_flat() {
 }
 
 #[test]
+fn on_is_a_group_and_capital_letters_do_not_matter() {
+    let loaded = read_with(&stairs(&["s on", "s OFF", "s On"]), &LoadOptions::default());
+    assert_eq!(loaded.model.mesh.smoothing(), &Smoothing::Groups(vec![1, 0, 1]));
+    assert!(loaded.findings.is_empty(), "{:?}", loaded.findings);
+}
+
+#[test]
 fn a_group_joins_faces_that_share_a_vertex_alone() {
     let tents = "v 0 0 0\nv 1 0 1\nv 0 1 1\nv -1 0 1\nv 0 -1 1\ns 3\nf 1 2 3\nf 1 4 5\n\
                  s 4\nf 1 3 4\n";
@@ -247,8 +254,8 @@ fn a_group_that_cannot_be_read_is_off_and_a_finding() {
     assert_eq!((finding.kind, finding.line), (FindingKind::SmoothingUnreadable, Some(9)));
     assert_eq!(
         finding.text,
-        "4 smoothing groups are neither numbers nor \"off\" (such as \"abc\") and are taken as off \
-         (first: line 9)"
+        "4 smoothing groups are neither numbers nor \"on\" or \"off\" (such as \"abc\") and are taken \
+         as off (first: line 9)"
     );
     assert_eq!(loaded.model.mesh.smoothing(), &Smoothing::Groups(vec![1, 0, 0, 0, 0, 1]));
 }

@@ -76,5 +76,5 @@ fn textures_that_cannot_be_seen_are_found() {
 fn comments_with_colours_of_zbrush_are_found() {
     let text = format!("#MRGB ffff0000ffff0000\n{CUBE}");
     let folder = Folder::with(&[("a.obj", &text)]);
-    assert!(folder.info("a.obj").contains("vertex colours of ZBrush"));
+    assert!(folder.info("a.obj").contains("a comment #MRGB (vertex colours of ZBrush) is ignored"));
 }

@@ -57,8 +57,11 @@ fn a_backslash_does_not_swallow_a_statement() {
     let comment = format!("# exported to C:\\out\\\n{CUBE}");
     let folder = Folder::with(&[("a.obj", &comment), ("plain.obj", CUBE)]);
     assert!(folder.drawn(&["a.obj"]) == folder.drawn(&["plain.obj"]));
-    let red = "newmtl m\\\nKd 1 0 0\n";
-    for statement in ["g dir\\", "o dir\\  ", "usemtl x\\"] {
+    for (statement, red) in [
+        ("g dir\\", "newmtl m\\\nKd 1 0 0\n"),
+        ("o dir\\  ", "newmtl m\\\nd 1\nKd 1 0 0\n"),
+        ("usemtl x\\", "newmtl m\\\nPr 1\nKd 1 0 0\n"),
+    ] {
         let text = SQUARE.replace("usemtl m\n", &format!("{statement}\nusemtl m\n"));
         let folder = Folder::with(&[("a.obj", &text), ("a.mtl", red), ("plain.obj", SQUARE)]);
         let info = folder.info("a.obj");

@@ -42,8 +42,8 @@ macro_rules! kinds {
 
 kinds! {
     VertexNotFinite [Loss]:
-        "a vertex is infinite or NaN and is skipped",
-        "# vertices are infinite or NaN and are skipped";
+        "a vertex is too large, infinite or NaN, and is skipped",
+        "# vertices are too large, infinite or NaN, and are skipped";
     VertexUnreadable [Joined, Loss]:
         "a vertex cannot be read (@) and is skipped",
         "# vertices cannot be read (the first: @) and are skipped";
@@ -73,8 +73,9 @@ kinds! {
         "a face has a corner that is not a number (\"@\") and is skipped",
         "# faces have corners that are not numbers (such as \"@\") and are skipped";
     SmoothingUnreadable [Joined]:
-        "a smoothing group is neither a number nor \"off\" (\"@\") and is taken as off",
-        "# smoothing groups are neither numbers nor \"off\" (such as \"@\") and are taken as off";
+        "a smoothing group is neither a number nor \"on\" or \"off\" (\"@\") and is taken as off",
+        "# smoothing groups are neither numbers nor \"on\" or \"off\" (such as \"@\") and \
+         are taken as off";
     LineOrPoint:
         "a statement \"@\" is skipped: only faces are drawn",
         "# statements \"@\" are skipped: only faces are drawn";
@@ -92,11 +93,11 @@ kinds! {
         "a texture coordinate has one number; the other is taken as 0",
         "# texture coordinates have one number; the other is taken as 0";
     UvNotFinite:
-        "a texture coordinate is infinite or NaN and is ignored",
-        "# texture coordinates are infinite or NaN and are ignored";
+        "a texture coordinate is too large, infinite or NaN, and is ignored",
+        "# texture coordinates are too large, infinite or NaN, and are ignored";
     NormalNotFinite:
-        "a normal is infinite or NaN and is ignored",
-        "# normals are infinite or NaN and are ignored";
+        "a normal is too large, infinite or NaN, and is ignored",
+        "# normals are too large, infinite or NaN, and are ignored";
     UvUnreadable [Loss]:
         "a texture coordinate cannot be read and is ignored",
         "# texture coordinates cannot be read and are ignored";
@@ -121,8 +122,8 @@ kinds! {
     ColorBytes: "vertex colours exceed 1 and are read as 0 to 255";
     ColorBright: "vertex colours exceed 1 and are clamped";
     ColorComments:
-        "a comment #MRGB (vertex colours of ZBrush) is ignored",
-        "# comments #MRGB (vertex colours of ZBrush) are ignored";
+        "a comment @ (vertex colours of ZBrush) is ignored",
+        "# comments @ (vertex colours of ZBrush) are ignored";
     FaceRepeats: "a face refers to a vertex twice", "# faces refer to a vertex twice";
     FaceNoArea: "a face has no area and no normal", "# faces have no area and no normals";
     PolygonCrosses [Joined]:
@@ -201,9 +202,18 @@ kinds! {
     MendedTransparency [Joined]:
         "material \"@\": Tr 1, which would hide the whole model, is taken as opaque",
         "# materials: Tr 1, which would hide the whole model, is taken as opaque";
+    MendedDissolve [Joined]:
+        "material \"@\": d 0, which would hide all that map_d shows, is taken as 1",
+        "# materials: d 0, which would hide all that map_d shows, is taken as 1";
+    Unlit [Joined]:
+        "material \"@\": illum 0: it shows its colour alone, without light",
+        "# materials: illum 0: they show their colours alone, without light";
     Transparent [Joined, Loss]:
         "material \"@\" is wholly transparent and draws nothing",
         "# materials are wholly transparent and draw nothing";
+    MapUnnamed [Joined]:
+        "a statement \"@\" names no file and is ignored",
+        "# statements (the first: \"@\") name no file and are ignored";
     MapUnused:
         "a statement \"@\" is ignored: maps of this kind are not drawn",
         "# statements \"@\" are ignored: maps of this kind are not drawn";

@@ -42,6 +42,10 @@ impl Statements {
             note(FindingKind::Illumination);
         }
         let unlit = self.illumination == Some(0.0);
+        // Exporters write it for surfaces with baked light, but some for all surfaces.
+        if unlit && self.map.is_none() && !self.is_own {
+            note(FindingKind::Unlit);
+        }
         let material = Material { ambient, diffuse, specular, exponent, emission };
         let (name, undrawn) = (self.name, self.undrawn);
         FileMaterial { name, material, opacity, texture, maps, unlit, undrawn }
@@ -142,6 +146,11 @@ impl Statements {
 
     fn mended_opacity(&self, note: &mut dyn FnMut(FindingKind)) -> f64 {
         let given = self.opacity.or_else(|| self.transparency.map(|x| 1.0 - x)).unwrap_or(1.0);
+        // Some exporters write the opacity to the map alone.
+        if given == 0.0 && self.maps.contains_key(&MapKind::Opacity) && !self.is_own {
+            note(FindingKind::MendedDissolve);
+            return 1.0;
+        }
         let [opacity, ..] = clamped([given; 3], note);
         opacity
     }
@@ -173,15 +182,16 @@ fn clamped(color: [f64; 3], note: &mut dyn FnMut(FindingKind)) -> [f64; 3] {
     within
 }
 
-/// Divides the colours of all materials by 255 if they are bytes: if all are whole numbers and one
-/// exceeds [`BYTES_ABOVE`].
+/// Divides the colours of all materials by 255 if they are bytes: if all are whole numbers, and one
+/// of a Kd or Ks exceeds [`BYTES_ABOVE`]. A large Ka alone is a lamp.
 pub(super) fn scale_bytes(materials: &mut [Statements], findings: &mut Findings) {
-    let (mut whole, mut largest) = (true, 0.0_f64);
-    for x in materials.iter_mut().flat_map(Statements::numbers_of_colors) {
-        whole &= x.fract() == 0.0;
-        largest = largest.max(*x);
-    }
-    if !whole || largest <= BYTES_ABOVE {
+    let is_large = |x: &f64| *x > BYTES_ABOVE;
+    let reflects =
+        |it: &Statements| [it.diffuse, it.specular].iter().flatten().flatten().any(is_large);
+    let is_whole = |x: &mut f64| x.fract() == 0.0;
+    if !materials.iter().any(reflects)
+        || !materials.iter_mut().flat_map(Statements::numbers_of_colors).all(is_whole)
+    {
         return;
     }
     findings.add(FindingKind::MendedBytes, "", None);

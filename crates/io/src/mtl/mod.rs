@@ -351,11 +351,14 @@ impl Statements {
                 self.keep_model();
             }
             b"bsdf" if words(rest).eq([b"pbr"]) => self.is_packed = true,
-            b"map_kd" => is_read = set(&mut self.map, map(rest).map(|map| (line.number, map))),
+            b"map_kd" => match map(rest) {
+                Some(map) => self.map = Some((line.number, map)),
+                None => note(FindingKind::MapUnnamed),
+            },
             b"map_aat" => {}
             _ if let Some(kind) = kind_of(&plain) => match map(rest) {
                 Some(map) => _ = self.maps.insert(kind, (line.number, map)),
-                None => is_read = false,
+                None => note(FindingKind::MapUnnamed),
             },
             b"disp" | b"decal" | b"refl" => note(FindingKind::MapUnused),
             _ if plain.starts_with(b"map_") => note(FindingKind::MapUnused),
@@ -454,7 +457,7 @@ mod tests {
     fn each_nonsense_is_mended_by_its_rule_and_listed() {
         use FindingKind::*;
         type Row = (&'static str, FindingKind, fn(&FileMaterial) -> bool);
-        let rows: [Row; 12] = [
+        let rows: [Row; 14] = [
             ("Kd .5 .5 .5\nKs 0 0 0", MendedAmbient, |m| m.material.ambient == [0.1; 3]),
             ("Ka 1 1 1\nKd .5 .5 .5\nKs 0 0 0", MendedAmbient, |m| m.material.ambient == [0.1; 3]),
             ("Ka .5 0 0\nKd .5 0 0\nKs 0 0 0", MendedAmbient, |m| {
@@ -473,6 +476,8 @@ mod tests {
                 m.material.diffuse == [1.0, 0.0, 1.0]
             }),
             ("Ka 0 0 0\nKd 1 1 1\nKs 0 0 0\nd 0", Transparent, |m| m.opacity == 0.0),
+            ("Ka 0 0 0\nKd 1 1 1\nKs 0 0 0\nillum 0", Unlit, |m| m.unlit),
+            ("Ka 0 0 0\nKd 1 1 1\nKs 0 0 0\nmap_Kd -o 1 1 1", MapUnnamed, |m| m.texture.is_none()),
         ];
         for (text, opacity) in [("Tr 0.75", 0.25), ("d 0.75", 0.75), ("d 0.01\nTr 0.5", 0.01)] {
             let (material, findings) =
@@ -502,6 +507,17 @@ mod tests {
         {
             assert!(!read(bright).1, "{bright}");
         }
+        let lamp = "newmtl light\nKa 20 20 20\nKd 1 1 1\nnewmtl red\nKd 1 0 0\n";
+        assert_eq!(read(lamp), (vec![[1.0; 3], [1.0, 0.0, 0.0]], false));
+    }
+
+    #[test]
+    fn an_opacity_of_0_next_to_a_map_of_opacity_is_1() {
+        let (material, findings) = read("newmtl m\nKa 0 0 0\nKd 1\nKs 0 0 0\nd 0\nmap_d a.png\n");
+        assert_eq!(material.opacity, 1.0);
+        assert_eq!(findings, [FindingKind::MendedDissolve, FindingKind::TextureMissing]);
+        let (material, _) = read("newmtl m\nKa 0 0 0\nKd 1\nKs 0 0 0\nd 0.5\nmap_d a.png\n");
+        assert_eq!(material.opacity, 0.5);
     }
 
     #[test]

@@ -105,7 +105,9 @@ impl Piece {
             | b"stech" => {
                 self.findings.note(FindingKind::FreeForm, line.number);
             }
-            b"#MRGB" => self.findings.note(FindingKind::ColorComments, line.number),
+            b"#MRGB" => {
+                self.findings.add(FindingKind::ColorComments, "#MRGB", Some(line.number));
+            }
             _ if keyword.starts_with(b"#") => self.comment(keyword, rest),
             _ => {
                 self.findings.add(FindingKind::Unknown, &excerpt(keyword), Some(line.number));
@@ -177,11 +179,15 @@ impl Piece {
         }
     }
 
-    /// Parses `s group` and `s off`.
+    /// Parses `s group`, `s on` and `s off`.
     fn smoothing(&mut self, rest: &[u8], line: u32) {
         let text = rest.split(|b| *b == b'#').next().unwrap_or_default().trim_ascii();
         let number = || std::str::from_utf8(text).ok()?.parse().ok();
-        let group = if text == b"off" { Some(0) } else { number() };
+        let group = match &text.to_ascii_lowercase()[..] {
+            b"off" => Some(0),
+            b"on" => Some(1),
+            _ => number(),
+        };
         self.smoothing = group.filter(|group| *group != INHERITED).unwrap_or_else(|| {
             self.findings.add(FindingKind::SmoothingUnreadable, &excerpt(text), Some(line));
             0
