@@ -170,3 +170,26 @@ fn presets_are_called_by_their_names_and_objects_as_the_user_calls_them() {
     assert_eq!(named("o "), ["one _ two three", "same", "same.001"]);
     assert_eq!(named("usemtl "), ["gold"]);
 }
+
+#[test]
+fn other_line_ends_and_a_byte_order_mark_do_not_make_an_export_foreign() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    put_picture(folder.path(), "t.png", 2, |x, y| [u8::from(x > y) * 255, 9, 9, 255]);
+    let obj = format!("mtllib a.mtl\n{SQUARE}usemtl m\nf 1/1 2/2 3/3 4/4\n");
+    put(folder.path(), &[("a.obj", &obj), ("a.mtl", "newmtl m\nmap_Kd t.png\n")]);
+    runs(folder.path(), &["export", "a.obj", "--out", "b.obj"]);
+    // Ka and Ns of other programs are repaired.
+    let own = "# exported by Marraztu\nnewmtl m\nKa 1 1 1\nKd .5 .5 .5\nKs .4 .4 .4\nNs 0.5\n\
+               map_Kd b-texture-1.png\n";
+    for (mark, end) in [("", "\n"), ("", "\r\n"), ("", "\r"), ("\u{feff}", "\r\n")] {
+        std::fs::write(path("b.mtl"), mark.to_owned() + &own.replace('\n', end)).unwrap();
+        let Loaded { model, findings } = load(folder.path(), "b.obj");
+        assert_eq!(findings, [], "{mark:?} {end:?}");
+        let material = model.materials[0].material;
+        assert_eq!((material.ambient, material.exponent), ([1.0; 3], 0.5));
+        // A texture without a mark is ours if our MTL file names it.
+        std::fs::copy(path("t.png"), path("b-texture-1.png")).unwrap();
+        runs(folder.path(), &["export", "a.obj", "--out", "b.obj"]);
+    }
+}

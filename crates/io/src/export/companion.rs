@@ -10,7 +10,7 @@ use std::path::Path;
 
 use memchr::memmem::find;
 
-use super::{MARK, SIGNATURE, escaped};
+use super::{MARK, escaped, is_signed};
 use crate::replace::{SaveError, check_target};
 
 /// The text by which a glTF file shows that this program wrote it.
@@ -24,7 +24,7 @@ pub(super) fn check_companion(companion: &Path, main: &Path) -> Result<(), SaveE
     check_target(companion)?;
     let is_new = fs::symlink_metadata(companion).is_err();
     let texts = [main.to_owned(), main.with_extension("mtl")];
-    if is_new || is_signed(companion) || texts.iter().any(|text| names(text, companion)) {
+    if is_new || is_ours(companion) || texts.iter().any(|text| names(text, companion)) {
         return Ok(());
     }
     let reason = format!(
@@ -36,17 +36,17 @@ pub(super) fn check_companion(companion: &Path, main: &Path) -> Result<(), SaveE
 
 /// Returns whether a file begins with the signature, or is a picture with the mark among its first
 /// chunks.
-fn is_signed(file: &Path) -> bool {
+fn is_ours(file: &Path) -> bool {
     let mut begin = Vec::new();
     let read = File::open(file).and_then(|file| file.take(256).read_to_end(&mut begin));
     let is_marked = || begin.starts_with(PNG) && find(&begin, MARK.as_bytes()).is_some();
-    read.is_ok() && (begin.starts_with(SIGNATURE.as_bytes()) || is_marked())
+    read.is_ok() && (is_signed(&begin) || is_marked())
 }
 
 /// Returns whether a text was exported by this program and names the companion.
 fn names(text: &Path, companion: &Path) -> bool {
     let Ok(text) = fs::read(text) else { return false };
     let name = companion.file_name().unwrap_or_default().to_string_lossy();
-    let is_ours = text.starts_with(SIGNATURE.as_bytes()) || find(&text, GENERATOR).is_some();
+    let is_ours = is_signed(&text) || find(&text, GENERATOR).is_some();
     is_ours && [&*name, &escaped(&name)].iter().any(|name| find(&text, name.as_bytes()).is_some())
 }

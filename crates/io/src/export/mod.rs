@@ -18,6 +18,7 @@ mod placeholders;
 use std::path::{Path, PathBuf};
 
 use self::companion::check_companion;
+use super::obj::lines::unmarked;
 use super::replace::{SaveError, Worth, check_target, replace};
 use super::sources::Sources;
 use marraztu_core::scene::{Scene, View};
@@ -25,6 +26,13 @@ use marraztu_core::scene::{Scene, View};
 /// The first line of exported text files. A companion file that begins with it was written by this
 /// program and may be replaced.
 pub(crate) const SIGNATURE: &str = "# exported by Marraztu\n";
+
+/// Returns whether a text begins with the signature. Editors and Git may have changed its line ends
+/// and added a byte-order mark.
+pub(crate) fn is_signed(text: &[u8]) -> bool {
+    let first = unmarked(text).split(|byte| matches!(byte, b'\n' | b'\r')).next();
+    first == Some(SIGNATURE.trim_end().as_bytes())
+}
 
 /// The comment of exported textures, which may be replaced likewise.
 const MARK: &str = "exported by Marraztu";

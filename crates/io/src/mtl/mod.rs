@@ -17,7 +17,7 @@ use self::map::{Map, map};
 use self::mend::scale_bytes;
 use self::normal_map::shows_normals;
 use super::error::{LoadError, short_name, shown};
-use super::export::SIGNATURE;
+use super::export::is_signed;
 use super::findings::{Finding, FindingKind, Findings, joined};
 use super::locate::Locator;
 use super::obj::lines::{Line, Lines, Oddity, decode, excerpt, words};
@@ -305,7 +305,7 @@ impl<'a> Library<'a> {
 
 fn read_statements(bytes: &[u8], findings: &mut Findings) -> Vec<Statements> {
     let mut list: Vec<Statements> = Vec::new();
-    let is_own = bytes.starts_with(SIGNATURE.as_bytes());
+    let is_own = is_signed(bytes);
     for line in Lines::new(bytes) {
         let (keyword, _) = line.statement();
         if line.oddity == Some(Oddity::NotContinued) {
@@ -417,6 +417,7 @@ fn set<T>(target: &mut Option<T>, value: Option<T>) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::export::SIGNATURE;
     use marraztu_core::scene::Material;
 
     fn read(text: &str) -> (FileMaterial, Vec<FindingKind>) {
