@@ -1,7 +1,7 @@
 //! The options for accuracy, one per axis, generated from the table of axes.
 
 use clap::builder::PossibleValuesParser;
-use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
+use clap::{Arg, ArgGroup, ArgMatches, Args, Command, FromArgMatches, Id};
 use marraztu_core::accuracy::{ACCURACY_PRESETS, AXES, AccuracyPreset, Axis, Choice, Settings};
 
 /// The chosen options; other axes keep their settings.
@@ -15,6 +15,9 @@ pub(crate) struct Accuracy {
 
 const PRESET: &str = "preset";
 const SAMPLES: &str = "samples";
+
+/// The group of all options, named like the groups that clap derives.
+const GROUP: &str = "Accuracy";
 
 impl Accuracy {
     /// Applies the preset to settings, then the single axes.
@@ -32,15 +35,23 @@ impl Accuracy {
 }
 
 impl Args for Accuracy {
+    fn group_id() -> Option<Id> {
+        Some(GROUP.into())
+    }
+
     fn augment_args(command: Command) -> Command {
         let presets: Vec<&str> = ACCURACY_PRESETS.iter().map(|preset| preset.word).collect();
         let help =
             format!("An accuracy preset, applied before single axes: {}", presets.join(", "));
+        let group = ArgGroup::new(GROUP).multiple(true).arg(PRESET);
+        let group = AXES.iter().fold(group, |group, axis| group.arg(axis.key));
         let command = command.next_help_heading("Accuracy").arg(option(PRESET, presets, help));
-        AXES.iter().fold(command, |command, axis| {
-            let words = axis.choices.iter().map(|choice| choice.word).collect();
-            command.arg(option(axis.key, words, help_of(axis)))
-        })
+        AXES.iter()
+            .fold(command, |command, axis| {
+                let words = axis.choices.iter().map(|choice| choice.word).collect();
+                command.arg(option(axis.key, words, help_of(axis)))
+            })
+            .group(group)
     }
 
     fn augment_args_for_update(command: Command) -> Command {

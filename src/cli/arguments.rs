@@ -57,7 +57,7 @@ pub(crate) struct Render {
     pub(crate) transparent: bool,
     /// Also print what the picture costs and gives: the milliseconds of a picture, and its error
     /// against the ideal, 256 samples per pixel, as on the dial of the editor
-    #[arg(long)]
+    #[arg(long, conflicts_with = "transparent")]
     pub(crate) report: bool,
     #[command(flatten)]
     pub(crate) picture: PictureArguments,
@@ -280,16 +280,9 @@ pub(crate) struct Slots(pub(crate) BTreeSet<u32>);
 impl Reading {
     /// Returns the load options for a file or for standard input.
     pub(crate) fn options(&self, file: &Path, input: Option<&Input>) -> LoadOptions {
-        let stated = || match input {
-            Some(input) => input.stated_up(),
-            None => io::stated_up(file),
-        };
-        // STL files are for printers and machines, and the plane of the table is z = 0.
-        let is_stl = || input.map_or_else(|| io::is_stl(file), Input::is_stl);
-        let up = self.up.or_else(|| stated().map(|stated| stated.up));
-        let up = up.or_else(|| is_stl().then_some(UpAxis::Z));
+        let usual_up = || input.map_or_else(|| io::usual_up(file), Input::usual_up);
         LoadOptions {
-            up: up.unwrap_or_default(),
+            up: self.up.unwrap_or_else(usual_up),
             scale: self.scale.unwrap_or_default(),
             winding: if self.flip_winding { Winding::Turned } else { Winding::Kept },
             crease: self.crease.unwrap_or_default(),

@@ -27,7 +27,8 @@ const AMPLIFIED: u16 = 16;
 Prints the largest difference of a channel in steps of 1/255 (with alpha), the number of pixels that
 differ, the root of the mean square error in steps, and FLIP: the difference that a viewer sees when
 flipping between the pictures, from 0 to 1 (Andersson and others, 2020). If a picture has 16 bits
-per channel, as depths and ids have, steps are 1/65535.
+per channel, as depths and ids have, steps are 1/65535. FLIP and the picture of differences are of
+the colours in 8 bits, without alpha.
 
 Examples:
   marraztu compare a.png b.png                  equal pixels

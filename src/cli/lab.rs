@@ -61,6 +61,7 @@ pub(crate) struct Lab {
     #[arg(long, value_name = "SCENE", num_args = 0..=1, require_equals = true)]
     #[arg(default_missing_value = "all", value_parser = suite_words(), hide_possible_values = true)]
     #[arg(conflicts_with_all = ["files", "quick", "axes", "max_error", "budget_ms", "pixel"])]
+    #[arg(conflicts_with_all = ["measure", "inside", "Reading", "Surfaces", "Seeing", "Accuracy"])]
     suite: Option<String>,
     /// The axes to measure [default: all]
     #[arg(long, value_name = "AXIS,...", value_delimiter = ',', value_parser = axis_words())]

@@ -7,7 +7,9 @@ use marraztu::picture_file::draw_into;
 use marraztu_core::accuracy::{AccuracyPreset, Settings, Shot};
 use marraztu_core::base::image::Size;
 use marraztu_core::edit::{framing, items, lighting};
-use marraztu_core::scene::{CameraId, Command, Fill, Item, Light, Object, Pose, Projection};
+use marraztu_core::scene::{
+    CameraId, Command, Fill, Item, Light, Object, Observer, Pose, Projection,
+};
 use marraztu_io::{self as io, Progress};
 use marraztu_lab::dial::{Dial, Figures, Step};
 use marraztu_lab::report::brief;
@@ -30,6 +32,9 @@ use super::target::Target;
 
 /// Draws the picture described by the arguments.
 pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
+    if arguments.report && !arguments.layers.has_color() {
+        return Err(usage("--report measures the picture, and --layers has no color"));
+    }
     let target = Target::of(arguments)?;
     let stage = stage(&arguments.picture)?;
     target.check(&stage.sources(&arguments.picture.files), arguments.transparent)?;
@@ -272,14 +277,27 @@ pub(crate) enum Aim {
 /// The lens of a camera that is given by its pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum PoseLens {
-    /// The lens of the selected camera.
+    /// The projection and the lens of the selected camera.
     Selected,
+    /// A perspective projection, with the angle of the selected camera.
+    Perspective,
     /// Degrees to each side, across the shorter side of the picture.
     Shorter(f64),
     /// Degrees to the left and to the right, for pictures of any shape.
     Across(f64),
     /// An orthographic projection, with half of the shorter side in units.
     Parallel(f64),
+}
+
+impl PoseLens {
+    /// Returns the projection, unless it is that of the scene.
+    const fn projection(self) -> Option<Projection> {
+        match self {
+            Self::Selected => None,
+            Self::Perspective | Self::Shorter(_) | Self::Across(_) => Some(Projection::Perspective),
+            Self::Parallel(_) => Some(Projection::Orthographic),
+        }
+    }
 }
 
 impl Aim {
@@ -307,6 +325,10 @@ pub(super) fn look(stage: &mut Stage, seeing: &Seeing, aim: &Aim) -> Result<(), 
     }
     // Time moves what the camera frames.
     stage.view.time = seeing.time.unwrap_or(stage.view.time);
+    // A camera that is asked for is the observer, even if an object was when the scene was saved.
+    if seeing.camera.is_some() || *aim != Aim::Options {
+        stage.view.observer = Observer::Camera;
+    }
     // The camera comes first: lights and exposure depend on the view.
     match aim {
         Aim::Options => aim_by_options(stage, seeing)?,
@@ -391,12 +413,12 @@ fn place_camera(stage: &mut Stage, pose: Pose, lens: PoseLens) -> Result<(), Fai
         frame(stage, framing::MODELS_FROM)?;
     }
     let half_angle = match lens {
-        PoseLens::Selected | PoseLens::Parallel(_) => None,
+        PoseLens::Selected | PoseLens::Perspective | PoseLens::Parallel(_) => None,
         PoseLens::Shorter(degrees) | PoseLens::Across(degrees) => Some(degrees),
     };
     stage.change(framing::from_pose(&stage.scene, &stage.view, pose, half_angle))?;
+    stage.view.projection = lens.projection().unwrap_or(stage.view.projection);
     if let PoseLens::Parallel(half_size) = lens {
-        stage.view.projection = Projection::Orthographic;
         let mut camera = stage.scene.selected_camera(&stage.view).clone();
         camera.lens.half_size = half_size;
         stage.change(Command::Replace(Item::Camera(stage.view.camera, Box::new(camera))))?;

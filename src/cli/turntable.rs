@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::{PathBufValueParser, TypedValueParser};
+use marraztu_core::edit::Refusal;
 use marraztu_core::edit::turntable::{Turn, turned};
 use marraztu_core::scene::View;
 use marraztu_io::{Animation, AnimationFormat, AnimationWriter, Progress, Sources};
@@ -68,6 +69,13 @@ pub(super) fn turntable(arguments: &Turntable) -> Result<(), Failure> {
     let (frames, seconds, transparent) = (*frames, *seconds, *transparent);
     let animation = Animation { size, frames, seconds, transparent };
     let turn = if turn == "camera" { Turn::Camera } else { Turn::Objects };
+    // A refusal leaves no file.
+    turned(&stage.scene, &stage.view, turn, 0.0).map_err(|refusal| match refusal {
+        Refusal::ObjectLooks => Failure::Absent(
+            "the observer is an object; choose a camera with --camera to turn it".to_owned(),
+        ),
+        other => other.into(),
+    })?;
     let mut writer = AnimationWriter::begin(&path, animation, &stage.sources(&picture.files))?;
     for text in writer.notes() {
         note(text);

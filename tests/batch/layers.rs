@@ -20,12 +20,12 @@ fn layers<'a>(more: &[&'a str]) -> Vec<&'a str> {
     [&base[..], &SMALL, more].concat()
 }
 
-fn json(path: &Path) -> serde_json::Value {
+pub(super) fn json(path: &Path) -> serde_json::Value {
     serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
 }
 
 /// Returns the samples of a PNG as it stores them.
-fn samples(path: &Path) -> image::DynamicImage {
+pub(super) fn samples(path: &Path) -> image::DynamicImage {
     image::open(path).unwrap()
 }
 
@@ -266,119 +266,4 @@ fn an_stl_file_is_drawn_like_the_same_obj_file() {
     std::fs::copy(at("a.stl"), at("copy")).unwrap();
     ends_with(0, folder.path(), &["thumbnail", "--size", "64", "copy", "small"]);
     assert!(std::fs::read(at("small")).unwrap().starts_with(b"\x89PNG"));
-}
-
-/// A box of 0.4 x 0.2 x 0.1 metres.
-const BOX: &str = "v -.2 -.1 -.05\nv .2 -.1 -.05\nv .2 .1 -.05\nv -.2 .1 -.05\n\
-                   v -.2 -.1 .05\nv .2 -.1 .05\nv .2 .1 .05\nv -.2 .1 .05\n\
-                   f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
-
-#[test]
-fn the_poses_of_bop_project_the_model_onto_its_mask() {
-    let folder = folder();
-    let at = |name: &str| folder.path().join(name);
-    std::fs::write(at("box.obj"), BOX).unwrap();
-    std::fs::write(at("crate.obj"), BOX).unwrap();
-    let options = ["--views", "fibonacci:6:3", "--size", "96x64", "--samples", "1"];
-    let bop = ["batch", "box.obj", "crate.obj", "--dataset", "bop", "--out", "bop"];
-    ends_with(0, folder.path(), &[&bop[..], &options].concat());
-    assert_eq!(json(&at("bop/models.json")), serde_json::json!({"1": "box.obj", "2": "crate.obj"}));
-    let tables = ["scene_camera", "scene_gt", "scene_gt_info"];
-    let [cameras, poses, infos] = tables.map(|name| json(&at(&format!("bop/000000/{name}.json"))));
-    let numbers = |json: &serde_json::Value| -> Vec<f64> {
-        json.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect()
-    };
-    for view in 0..6 {
-        let (camera, pose, info) =
-            (&cameras[view.to_string()], &poses[view.to_string()][0], &infos[view.to_string()][0]);
-        let [k, r, t] = [&camera["cam_K"], &pose["cam_R_m2c"], &pose["cam_t_m2c"]].map(numbers);
-        let (mut low, mut high) = ([f64::MAX; 3], [f64::MIN; 3]);
-        for corner in 0..8 {
-            let sign = |bit: u32, half: f64| if corner >> bit & 1 == 1 { half } else { -half };
-            let p = [sign(0, 200.0), sign(1, 100.0), sign(2, 50.0)];
-            let row = |i: usize| (0..3).map(|j| r[3 * i + j] * p[j]).sum::<f64>() + t[i];
-            let [x, y, z] = [row(0), row(1), row(2)];
-            let seen = [k[0] * x / z + k[2], k[4] * y / z + k[5], z];
-            for axis in 0..3 {
-                low[axis] = low[axis].min(seen[axis]);
-                high[axis] = high[axis].max(seen[axis]);
-            }
-        }
-        // Pixel centres are whole numbers.
-        let bounds = numbers(&info["bbox_visib"]);
-        let expected = [low[0], low[1], high[0] - low[0], high[1] - low[1]];
-        for (found, expected) in bounds.iter().zip(expected) {
-            assert!((found - expected).abs() < 1.6, "{view}: {bounds:?} {expected:?}");
-        }
-        assert_eq!(info["bbox_obj"], info["bbox_visib"]);
-        let name =
-            |kind: &str, object: &str| at(&format!("bop/000000/{kind}/{view:06}{object}.png"));
-        let mask = samples(&name("mask_visib", "_000000")).into_luma8();
-        let count = mask.pixels().filter(|pixel| pixel[0] == 255).count();
-        assert_eq!(info["px_count_visib"], count);
-        let depth = samples(&name("depth", "")).into_luma16();
-        let scale = camera["depth_scale"].as_f64().unwrap();
-        for (depth, mask) in depth.pixels().zip(mask.pixels()) {
-            let millimetres = f64::from(depth[0]) * scale;
-            assert_eq!(depth[0] > 0, mask[0] > 0);
-            let is_right = (low[2] - 1.0..=high[2] + 1.0).contains(&millimetres);
-            assert!(depth[0] == 0 || is_right, "{view}: {millimetres} {low:?} {high:?}");
-        }
-    }
-}
-
-#[test]
-fn the_segments_of_coco_are_those_of_the_pixels() {
-    let folder = folder();
-    let at = |name: &str| folder.path().join(name);
-    let coco = ["batch", "models/wheel.obj", "models/cam.obj", "--views", "2", "--dataset", "coco"];
-    ends_with(0, folder.path(), &[&coco[..], &["--out", "coco"], &SMALL].concat());
-    let [panoptic, instances] =
-        ["panoptic", "instances"].map(|name| json(&at(&format!("coco/annotations/{name}.json"))));
-    assert_eq!(panoptic["images"].as_array().unwrap().len(), 4);
-    let names: Vec<&str> = panoptic["categories"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|it| it["name"].as_str().unwrap())
-        .collect();
-    assert_eq!(names, ["cam.obj", "wheel.obj"]);
-    for (annotation, instance) in panoptic["annotations"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .zip(instances["annotations"].as_array().unwrap())
-    {
-        let file = annotation["file_name"].as_str().unwrap();
-        assert!(at(&format!("coco/images/{file}")).exists());
-        let ids = samples(&at(&format!("coco/panoptic/{file}"))).into_rgb8();
-        let area = ids.pixels().filter(|pixel| pixel.0 == [1, 0, 0]).count();
-        let segment = &annotation["segments_info"][0];
-        assert_eq!((&segment["id"], &segment["area"]), (&1.into(), &area.into()));
-        assert_eq!(instance["area"], area);
-        assert_eq!(instance["category_id"], segment["category_id"]);
-        let runs = instance["segmentation"]["counts"].as_array().unwrap();
-        let runs: Vec<usize> = runs.iter().map(|run| run.as_u64().unwrap() as usize).collect();
-        assert_eq!(runs.iter().sum::<usize>(), 64 * 64);
-        assert_eq!(runs.iter().skip(1).step_by(2).sum::<usize>(), area);
-        // Runs go down the columns.
-        let mut at = 0;
-        for (run, length) in runs.iter().enumerate() {
-            for i in at..at + length {
-                let pixel = ids.get_pixel((i / 64) as u32, (i % 64) as u32);
-                assert_eq!(pixel[0] == 1, run % 2 == 1);
-            }
-            at += length;
-        }
-    }
-    // Each model has its data set.
-    let nerf = ["batch", "models/wheel.obj", "--views", "3", "--dataset", "nerf", "--out", "nerf"];
-    ends_with(0, folder.path(), &[&nerf[..], &["--depth-scale", "10"], &SMALL].concat());
-    let cameras = json(&at("nerf/wheel/transforms.json"));
-    let frames = cameras["frames"].as_array().unwrap();
-    assert_eq!(frames.len(), 3);
-    for name in ["file_path", "depth_file_path", "mask_path"] {
-        let path = frames[2][name].as_str().unwrap();
-        assert!(at("nerf/wheel").join(path).exists(), "{path}");
-    }
 }

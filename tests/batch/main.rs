@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
+mod datasets;
 mod layers;
 mod pictures;
 
@@ -289,6 +290,10 @@ fn mistakes_in_a_list_are_found_before_the_first_picture() {
             "file\nmodels/cam.obj\nmodels/cam.obj\n",
             "two pictures would be written to cam.png: list.csv:2",
         ),
+        (
+            "file,out\nmodels/cam.obj,new/a.png\nmodels/cam.obj,./new/../new/a.png\n",
+            "two pictures would be written to ./new/../new/a.png: list.csv:2",
+        ),
         ("name\nmodels/cam.obj\n", "no column \"file\""),
         ("file\n", "the list has no rows"),
     ] {
@@ -307,6 +312,10 @@ fn mistakes_in_a_list_are_found_before_the_first_picture() {
         (&["batch", "a.obj", "--size", "-5"], "from 1 to 16384"),
         (
             &["batch", "models/cam.obj", "--report", "a.jsonl", "--times", "a.jsonl"],
+            "--report and --times name the same file",
+        ),
+        (
+            &["batch", "models/cam.obj", "--report", "a.jsonl", "--times", "b/.././a.jsonl"],
             "--report and --times name the same file",
         ),
         (&["batch", "--list", "models"], "models: this is a folder, not a file"),
@@ -443,6 +452,7 @@ fn no_output_replaces_a_file_that_was_read_or_that_is_something_else() {
         (&["--report", "poem.txt"], "poem.txt: a file with this name exists and is not a report"),
         (&["--times", "poem.txt"], "is not a report"),
         (&["--report", "a.png"], "a.png is the name of a picture"),
+        (&["--report", "./v/../a.png"], "a.png is the name of a picture"),
         (&["--sheet", "1x1", "--sheets", "s"], "sheet-000.png: a file with this name exists"),
         (&["--sheet", "1x1", "--sheets", "t", "--out", "t/sheet-000.png"], "the name of a picture"),
         (&["--sheet", "1x1", "--out", "b.npy", "--layers", "depth"], "b.npy is none"),

@@ -190,6 +190,39 @@ fn cameras_of_a_file_place_the_camera_and_the_size() {
 }
 
 #[test]
+fn the_cameras_of_views_look_with_their_own_lens_whatever_the_scene_says() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let json = r#"{"w": 64, "h": 64, "frames": [
+        {"file_path": "a", "fl_x": 100, "transform_matrix": [[1,0,0,0.5],[0,1,0,0.5],[0,0,1,3]]},
+        {"file_path": "b", "projection": "perspective",
+         "transform_matrix": [[1,0,0,0.5],[0,1,0,0.5],[0,0,1,3]]}]}"#;
+    std::fs::write(at("cameras.json"), json).unwrap();
+    let drawn = |view: &str| {
+        let scene = format!(
+            r#"(version: 1, next_id: 9, objects: [
+                (id: 1, name: "a", sides: Two, model: File(path: "models/square.obj"))],
+            cameras: [(id: 2, name: "c", eye: (0.0, 0.0, 9.0))],
+            lights: [(id: 3, name: "ambient", slot: 0, kind: Ambient)],
+            view: (object: Some(1), camera: 2, light: Some(3), subject: Object, marks: false,
+                {view}))"#
+        );
+        std::fs::write(at("s.marraztu"), scene).unwrap();
+        ["cameras.json", "front"].iter().for_each(|views| {
+            let base = ["batch", "s.marraztu", "--views", views, "--out", "o/{view_name}.png"];
+            ends_with(0, folder.path(), &[&base[..], &SMALL].concat());
+        });
+        ["a", "b", "front"].map(|name| io::load_picture(&at(&format!("o/{name}.png"))).unwrap())
+    };
+    let [angle, selected, front] = drawn("");
+    assert!(angle != selected && selected != front);
+    assert!(drawn("observer: Object") == [angle.clone(), selected.clone(), front.clone()]);
+    let [parallel_angle, parallel_selected, parallel_front] = drawn("projection: Orthographic");
+    assert!([parallel_angle, parallel_selected] == [angle, selected]);
+    assert!(parallel_front != front, "a direction has no projection");
+}
+
+#[test]
 fn pictures_are_compared_with_an_exit_status() {
     let folder = folder();
     let render = |name: &str, more: &[&str]| {

@@ -12,7 +12,7 @@ use marraztu_core::accuracy::Shot;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::base::math::Axis;
 use marraztu_core::edit::{lights, motion};
-use marraztu_core::scene::{Projection, Scene};
+use marraztu_core::scene::{Observer, Projection, Scene, View};
 use marraztu_io as io;
 use marraztu_render::Renderer;
 use marraztu_render::plan_frame;
@@ -198,6 +198,28 @@ fn a_scene_is_drawn_as_it_was_saved_and_models_go_into_it() {
 }
 
 #[test]
+fn a_camera_that_is_asked_for_looks_even_if_an_object_is_the_observer() {
+    let folder = folder();
+    let (scene, view) = io::default_scene();
+    let saved = |observer| {
+        let view = View { observer, ..view.clone() };
+        let path = folder.path().join("s.marraztu");
+        io::save(&path, &scene, &view, &Settings::default()).unwrap();
+    };
+    saved(Observer::Camera);
+    let expected = drawn(folder.path(), &["s.marraztu"]);
+    saved(Observer::Object);
+    assert!(drawn(folder.path(), &["s.marraztu"]) != expected);
+    assert!(drawn(folder.path(), &["s.marraztu", "--camera", "1"]) == expected);
+    let turn = ["turntable", "s.marraztu", "--turn", "camera", "--size", "8", "--frames", "2"];
+    let turn = [&turn[..], &["--out", "frames"]].concat();
+    let (_, err) = ends_with(1, folder.path(), &turn);
+    assert!(err.contains("the observer is an object; choose a camera with --camera"), "{err}");
+    assert!(!folder.path().join("frames").exists());
+    ends_with(0, folder.path(), &[&turn[..], &["--camera", "1"]].concat());
+}
+
+#[test]
 fn an_example_needs_no_file() {
     let folder = folder();
     let chess = concat!(env!("CARGO_MANIFEST_DIR"), "/assets/examples/chess.marraztu");
@@ -292,6 +314,8 @@ fn invalid_arguments_end_with_2_and_draw_nothing() {
         (&["render", "-o", "a.png", "--camera", "0"], "0 is not in"),
         (&["render", "-o", "a.png", "--lights", "x"], "numbers"),
         (&["render", "-o", "a.png", "--edges", "--edges-over"], "cannot be used with"),
+        (&["render", "-o", "a.png", "--report", "--transparent"], "cannot be used with"),
+        (&["render", "-o", "a.png", "--report", "--layers", "mask"], "--layers has no color"),
         (&["render", "-o", "a.png", "--up", "z"], "name one"),
         (&["render", "-o", "a.png", "--crease", "60"], "name one"),
         (&["render", "-o", "a.png", "square.obj", "--crease", "181"], "from 0 to 180"),

@@ -139,10 +139,23 @@ fn one_scene_of_the_suite_is_measured_by_its_word() {
     let arguments = ["lab", "--suite=depth", "--size", "48x27", "--out", "found"];
     let (out, _) = lab(0, folder.path(), &arguments);
     assert!(out.contains("At 48x27, 1 sample per pixel, on suite scene depth, "), "{out}");
-    assert!(out.contains("again: marraztu lab --suite=depth"), "{out}");
+    assert!(out.contains("again: marraztu lab --suite=depth --size 48x27\n"), "{out}");
     let found = folder.path().join("found");
     for name in ["page.md", "page.html", "table.csv", "report.json", "depth-depth-light.svg"] {
         assert!(found.join(name).exists(), "{name}");
     }
     lab(2, folder.path(), &["lab", "--suite=beauty"]);
+    // The suite has its own scenes, settings and metric.
+    for more in [
+        &["--measure", "flip"][..],
+        &["--inside"],
+        &["--samples", "4"],
+        &["--preset", "draft"],
+        &["--material", "gold"],
+        &["--up", "z"],
+        &["--camera", "1"],
+    ] {
+        let (_, err) = lab(2, folder.path(), &[&["lab", "--suite=tiny"][..], more].concat());
+        assert!(err.contains("cannot be used with") && err.contains(more[0]), "{err}");
+    }
 }

@@ -10,8 +10,8 @@ use super::progress::Progress;
 use super::read::open as open_file;
 use super::scene_file::{Opened, SceneFileError, open_text};
 use super::stl::has_stl_content;
-use super::up_axis::{StatedUp, stated_in};
-use marraztu_core::scene::LoadOptions;
+use super::up_axis::{stated_in, stated_or_usual};
+use marraztu_core::scene::{LoadOptions, UpAxis};
 
 /// The name of the input in messages and in the outline.
 const NAME: &str = "standard input";
@@ -74,14 +74,10 @@ impl Input {
         SCENE.iter().any(|begin| text.starts_with(begin))
     }
 
-    /// Returns the up axis that the comments at the top state.
-    pub fn stated_up(&self) -> Option<StatedUp> {
-        stated_in(&self.bytes)
-    }
-
-    /// Returns whether the input is an STL file.
-    pub fn is_stl(&self) -> bool {
-        has_stl_content(&self.bytes, self.bytes.len())
+    /// Returns the up axis to read the model with: the axis that it states, z for STL, or y.
+    pub fn usual_up(&self) -> UpAxis {
+        let is_stl = || has_stl_content(&self.bytes, self.bytes.len());
+        stated_or_usual(stated_in(&self.bytes), is_stl)
     }
 
     /// Parses the input as a model.

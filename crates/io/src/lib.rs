@@ -80,10 +80,9 @@ pub use scene_file::{
 };
 pub use sources::Sources;
 pub use stamp::{encode_stamped, read_stamp, stamped_at_end};
-pub use stl::is_stl;
 pub use texture::{
     load_deep_pixels, load_picture, load_texture, load_texture_with, texture_endings,
     texture_formats,
 };
-pub use up_axis::{StatedUp, stated_up};
+pub use up_axis::{StatedUp, stated_up, usual_up};
 pub use window_state::{Panels, WindowState};

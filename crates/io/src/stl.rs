@@ -43,7 +43,7 @@ pub(super) fn has_stl_content(head: &[u8], size: usize) -> bool {
 }
 
 /// Returns whether the file at `path` is an STL file, judged by its name or by its content.
-pub fn is_stl(path: &Path) -> bool {
+pub(super) fn is_stl(path: &Path) -> bool {
     // Reading from a pipe would consume bytes that the loader needs.
     let size = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file);
     let size = size.and_then(|metadata| usize::try_from(metadata.len()).ok());
@@ -311,6 +311,9 @@ mod tests {
             ascii_file(" pyramid of mine").into_bytes(),
             ascii_file("").into_bytes(),
             ascii_file(" A").to_uppercase().replace('\n', "\r\n").into_bytes(),
+            ascii_file(" a").replace('\n', "\r").into_bytes(),
+            ascii_file(" a vertex").replace('\n', " ").into_bytes(),
+            format!("\u{feff}{}", ascii_file(" a")).into_bytes(),
         ];
         let first = load(&files[0], &options).unwrap();
         assert!(first.findings.is_empty(), "{:?}", first.findings);
@@ -339,6 +342,12 @@ mod tests {
         let names: Vec<&str> = mesh.parts().iter().map(|part| &*part.name).collect();
         assert_eq!(names, ["a", "b"]);
         assert_eq!(mesh.polygon_parts(), [0, 0, 0, 0, 1, 1, 1, 1]);
+        // Words decide, not lines. Keywords in names are no statements.
+        let text = (ascii_file(" a") + &ascii_file(" b")).replace("endsolid", "endsolid a");
+        for text in [text.replace('\n', " "), text.replace("endsolid a", "endsolid Solid facet")] {
+            let other = load(text.as_bytes(), &LoadOptions::default()).unwrap().model.mesh;
+            assert_eq!((other.parts(), other.corners()), (mesh.parts(), mesh.corners()), "{text}");
+        }
     }
 
     #[test]
@@ -349,13 +358,17 @@ mod tests {
         let mut more = whole.clone();
         more[80..84].copy_from_slice(&u32::MAX.to_le_bytes());
         let text = ascii_file("");
+        let wrong = text.replacen("vertex 0e0 0 0", "vertex 0 zero 0", 1);
         for (file, reason) in [
             (whole[..whole.len() - 1].to_vec(), "it states 4 triangles and has 3"),
             (more, "it states 4294967295 triangles and has 4"),
             (not_finite, "triangle 2 of the STL file has a corner that is not finite"),
             (whole[..40].to_vec(), "this is not an STL file: it has 40 bytes"),
             (b"solid a\nendsolid a\n".to_vec(), "the STL file has no triangles"),
-            (text.replacen("vertex 0e0 0 0", "vertex 0 zero 0", 1).into(), "a.stl:4: a vertex has"),
+            (wrong.clone().into(), "a.stl:4: a vertex has"),
+            (wrong.replace('\n', "\r\n").into(), "a.stl:4: a vertex has"),
+            (wrong.replace('\n', "\r").into(), "a.stl:4: a vertex has"),
+            (text.replacen("vertex 0e0 0 0", "vertex 0 0 0 0", 1).into(), "a.stl:4: a vertex has"),
             (text.replacen("vertex 0e0 0 0", "vertex 0 inf 0", 1).into(), "a.stl:4: a vertex has"),
             (text.replacen("vertex 0e0 0 0", "", 1).into(), "a.stl:8: the facet has 2 corners"),
             (text.replacen("outer", "inner", 1).into(), "a.stl:3: \"inner\" is not a statement"),

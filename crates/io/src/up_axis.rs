@@ -9,6 +9,7 @@ use std::io::Read;
 use std::path::Path;
 
 use super::packed::{Unpacked, unpacked_name};
+use super::stl::is_stl;
 use marraztu_core::scene::UpAxis;
 
 /// The number of bytes that are searched.
@@ -48,6 +49,21 @@ pub fn stated_up(path: &Path) -> Option<StatedUp> {
     stated_in(&head)
 }
 
+/// Returns the up axis to read a file with: the axis that it states, z for STL, or y.
+pub fn usual_up(path: &Path) -> UpAxis {
+    stated_or_usual(stated_up(path), || is_stl(path))
+}
+
+/// Returns the up axis for a file with this statement.
+pub(super) fn stated_or_usual(stated: Option<StatedUp>, is_stl: impl FnOnce() -> bool) -> UpAxis {
+    match stated {
+        Some(stated) => stated.up,
+        // STL files are for printers and machines, and the plane of the table is z = 0.
+        None if is_stl() => UpAxis::Z,
+        None => UpAxis::default(),
+    }
+}
+
 /// Finds the up axis in the comments before the first statement.
 pub(super) fn stated_in(bytes: &[u8]) -> Option<StatedUp> {
     let head = &bytes[..bytes.len().min(usize::try_from(HEAD).unwrap_or(usize::MAX))];
@@ -63,7 +79,8 @@ pub(super) fn stated_in(bytes: &[u8]) -> Option<StatedUp> {
     })
 }
 
-/// Parses a comment in lower case: "z-up", "up axis: -y", "axis_forward=-z, up=y".
+/// Parses a comment in lower case: "z-up", "up axis: -y", "axis_forward=-z, up=y", "up: z forward:
+/// y".
 fn up_of(comment: &str) -> Option<UpAxis> {
     if WRITE_Z_UP.iter().any(|program| comment.contains(program)) {
         return Some(UpAxis::Z);
@@ -77,13 +94,15 @@ fn up_of(comment: &str) -> Option<UpAxis> {
         }
         let small = |word: &&String| ["axis", "is", "vector", "points"].contains(&word.as_str());
         // The axis follows "up" ("up axis: z") or precedes it ("z up, y forward").
-        let mut after = words[at + 1..].iter().skip_while(small);
-        let (next, second) = (after.next(), after.next());
-        let is_forward = second.is_some_and(|word| word == "forward" || word == "front");
-        if let Some(up) = next.filter(|_| !is_forward).and_then(|word| axis(word)) {
-            return Some(up);
+        let mut after = words[at + 1..].iter().filter(|word| !small(word));
+        let [next, second, third] = std::array::from_fn(|_| after.next().map(String::as_str));
+        let before = || words[..at].iter().rev().find(|word| !small(word));
+        let [next_axis, axis_before] = [next, before().map(String::as_str)].map(|it| axis(it?));
+        match second {
+            // "z up y forward", or "up z forward y".
+            Some("forward" | "front") => axis_before.or_else(|| next_axis.filter(|_| is_axis(third?))),
+            _ => next_axis.or(axis_before),
         }
-        words[..at].iter().rev().find(|word| !small(word)).and_then(|word| axis(word))
     })
 }
 
@@ -129,6 +148,13 @@ mod tests {
             ("Z up, Y forward", UpAxis::Z),
             ("Z up Y forward", UpAxis::Z),
             ("axis_forward='-Z', axis_up='Y'", UpAxis::Y),
+            ("Up: Z  Forward: Y", UpAxis::Z),
+            ("Forward: Y  Up: Z", UpAxis::Z),
+            ("Right: X  Up: -Z  Forward: Y", UpAxis::MinusZ),
+            ("Up axis = +Z (Forward +Y)", UpAxis::Z),
+            ("Up axis: Y, forward axis: -Z", UpAxis::Y),
+            ("Y axis up, Z axis front", UpAxis::Y),
+            ("Z up Y axis forward X right", UpAxis::Z),
             ("up: -Y", UpAxis::MinusY),
             ("OpenSCAD obj exporter", UpAxis::Z),
             ("Object Export From Tinkercad Server 2015", UpAxis::Z),
@@ -147,6 +173,8 @@ mod tests {
             "# Blender 4.0.2\n# www.blender.org\nv 0 0 1\n",
             "# cleaned up by hand\nv 0 0 1",
             "# set up a mesh\n# group z\nv 0 0 1",
+            "# set up z forward\nv 0 0 1",
+            "# looked up y front faces\nv 0 0 1",
             "v 0 0 1\n# z-up\n",
             "# 8 vertices\no up_z\n",
         ] {

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use glam::{DMat3, DMat4};
 use marraztu_core::accuracy::Shot;
 use marraztu_core::base::image::Size;
-use marraztu_core::scene::{Command, Item, ObjectId, Projection};
+use marraztu_core::scene::{Command, Item, ObjectId, Projection, UpAxis};
 use marraztu_io::{self as io, LayerKind, LayerNumbers, LayerPicture, PngNumbers};
 use marraztu_render::{AxesConvention, Layer, LayerSet, NormalSpace, PictureCamera, Renderer};
 use serde_json::{Value, json};
@@ -98,7 +98,7 @@ struct DatasetObject {
     id: i32,
     /// The model's file, or the name of the object.
     model: PathBuf,
-    /// From the model to the camera, with the axes of OpenCV.
+    /// From the model, with the axes of its file, to the camera, with the axes of OpenCV.
     camera_from_model: DMat4,
     /// The visible pixels.
     visible: Region,
@@ -188,7 +188,8 @@ pub(super) fn image(
         let file = own.model.source.as_deref();
         let model = file.map_or_else(|| PathBuf::from(&own.name), Path::to_owned);
         let camera_from_model = camera.camera_from_world(AxesConvention::OpenCv)
-            * own.world_from_object(shot.view.time);
+            * own.world_from_object(shot.view.time)
+            * upright(own.model.options.up);
         if dataset == Dataset::Bop {
             rotation(camera_from_model).ok_or_else(|| {
                 Fault::Input(format!("{} is scaled or mirrored: BOP has rotations only", own.name))
@@ -229,6 +230,12 @@ fn mask_png(size: Size, mask: &[bool]) -> Result<Vec<u8>, Fault> {
     let (kind, numbers) = (LayerKind::Mask, LayerNumbers::U8(&bytes));
     let layer = LayerPicture { name: "mask", kind, channels: &["mask"], numbers };
     io::layer_png(size, &layer, &PngNumbers::default(), None).map_err(Fault::Output)
+}
+
+/// Returns the rotation of a loaded model from its file: data sets name the file, with its axes.
+fn upright(up: UpAxis) -> DMat4 {
+    let [x, y, z] = DMat3::IDENTITY.to_cols_array_2d().map(|axis| up.upright(axis).into());
+    DMat4::from_mat3(DMat3::from_cols(x, y, z))
 }
 
 /// Returns the rotation of a pose; `None` if it has a scale or a mirror.

@@ -4,7 +4,7 @@
 //! are numbered over the whole list, whatever part of it this process draws.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::sync::Arc;
 
 use marraztu_core::base::image::Size;
@@ -200,6 +200,9 @@ impl RowReader {
         let (mut views, mut out) = (self.base_views.clone(), self.base_out.clone());
         for (name, value) in values {
             match (name.as_str(), value) {
+                (name @ ("out" | "layers" | "ids"), _) if self.dataset.is_some() => {
+                    return Err(wrong(Some(name), "a data set has its own folder and layers"));
+                }
                 ("views", Value::Text(text)) => views = Some(text),
                 ("out", Value::Text(text)) => out = Some(text),
                 (name, value) if self.parser.has(name) => {
@@ -297,10 +300,10 @@ fn jobs_of(rows: &[Arc<Row>]) -> Result<Vec<Job>, Failure> {
 
 /// Rejects pictures that would overwrite each other.
 fn check_outputs(jobs: &[Job], arguments: &Batch) -> Result<(), Failure> {
-    let mut outputs: BTreeMap<&PathBuf, &Job> = BTreeMap::new();
+    let (mut places, mut outputs) = (Places::default(), BTreeMap::new());
     let all = jobs.iter().flat_map(|job| job.files.iter().map(move |file| (file, job)));
     for (file, job) in all {
-        let Some(other) = outputs.insert(&file.path, job) else { continue };
+        let Some(other) = outputs.insert(places.of(&file.path), job) else { continue };
         let of = |job: &Job| format!("{}, view {}", job.row.place, job.camera().name);
         let way = match arguments.dataset {
             Some(_) => "a data set tells models apart by the names of their files",
@@ -314,13 +317,45 @@ fn check_outputs(jobs: &[Job], arguments: &Batch) -> Result<(), Failure> {
         )));
     }
     let sheets = arguments.sheet.iter().flat_map(|grid| grid.files(&arguments.sheets, jobs.len()));
-    let others = arguments.report.iter().chain(&arguments.times).cloned().chain(sheets);
-    match others.into_iter().find(|other| outputs.contains_key(other)) {
-        Some(other) => Err(Failure::Usage(format!(
-            "{} is the name of a picture; choose another name",
-            other.display()
-        ))),
-        None => Ok(()),
+    let [report, times] = [&arguments.report, &arguments.times];
+    let mut others = report.iter().chain(times).cloned().chain(sheets);
+    if let Some(other) = others.find(|other| outputs.contains_key(&places.of(other))) {
+        let reason = format!("{} is the name of a picture; choose another name", other.display());
+        return Err(Failure::Usage(reason));
+    }
+    match (report, times) {
+        (Some(report), Some(times)) if places.of(report) == places.of(times) => {
+            Err(usage("--report and --times name the same file"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Absolute paths of files that may not exist yet, without links. Two paths of one file are equal.
+#[derive(Debug, Default)]
+struct Places {
+    /// The places of folders.
+    folders: BTreeMap<PathBuf, PathBuf>,
+}
+
+impl Places {
+    fn of(&mut self, file: &Path) -> PathBuf {
+        let (folder, name) = (file.parent().unwrap_or(file), file.file_name().unwrap_or_default());
+        if let Some(place) = self.folders.get(folder) {
+            return place.join(name);
+        }
+        let start = std::env::current_dir().unwrap_or_default();
+        let place = folder.components().fold(start, |at, part| {
+            let next = match part {
+                Component::ParentDir => at.parent().unwrap_or(&at).to_owned(),
+                Component::CurDir => at,
+                other => at.join(other),
+            };
+            // Folders that do not exist are created as they are named.
+            next.canonicalize().unwrap_or(next)
+        });
+        self.folders.insert(folder.to_owned(), place.clone());
+        place.join(name)
     }
 }
 

@@ -47,7 +47,7 @@ use self::sheets::{Grid, check_sheets, grid, write_sheets};
 use self::studio::{Studio, silence_panics};
 use super::arguments::choice;
 use super::cameras::{CAMERAS, check_cameras, write_cameras};
-use super::failure::{Failure, usage};
+use super::failure::Failure;
 use super::layers::NUMBER_ENDINGS;
 use super::talk::{Talk, note, print};
 use super::values::threads;
@@ -165,9 +165,6 @@ pub(super) fn batch(arguments: Box<Batch>) -> Result<(), Failure> {
         return print(&listed(&jobs));
     }
     let (report, times) = (arguments.report.as_deref(), arguments.times.as_deref());
-    if report.is_some() && report == times {
-        return Err(usage("--report and --times name the same file"));
-    }
     report.iter().chain(&times).try_for_each(|path| check_report(path, &inputs))?;
     if let Some(grid) = arguments.sheet {
         check_sheets(grid, &arguments.sheets, &jobs)?;

@@ -210,9 +210,9 @@ impl Intrinsics {
         Ok(Some(Size::new(side(w)?, side(h)?)))
     }
 
-    /// Returns the lens of a perspective camera.
+    /// Returns the lens of a perspective camera; `otherwise`, if the file states no angle.
     #[expect(clippy::cast_precision_loss, reason = "at most 16,384 pixels")]
-    fn lens(&self, size: Option<Size>) -> Result<PoseLens, String> {
+    fn lens(&self, size: Option<Size>, otherwise: PoseLens) -> Result<PoseLens, String> {
         let half = |tangent: f64| {
             let degrees = libm::atan(tangent).to_degrees();
             let is_right = degrees > 0.0 && degrees < 90.0;
@@ -236,7 +236,7 @@ impl Intrinsics {
         if self.fl_x.is_some() {
             return Err("fl_x is in pixels: w and h are needed".to_owned());
         }
-        let Some(angle) = self.camera_angle_x else { return Ok(PoseLens::Selected) };
+        let Some(angle) = self.camera_angle_x else { return Ok(otherwise) };
         let across = libm::tan(angle / 2.0);
         match sides {
             Some([w, h]) => half(across * (h / w).min(1.0)).map(PoseLens::Shorter),
@@ -268,7 +268,8 @@ fn from_json(json: &[u8]) -> Result<Vec<CameraView>, String> {
         intrinsics.check_lens().map_err(named)?;
         let size = intrinsics.size().map_err(named)?;
         let lens = match frame.projection.as_deref() {
-            None | Some("perspective") => intrinsics.lens(size),
+            None => intrinsics.lens(size, PoseLens::Selected),
+            Some("perspective") => intrinsics.lens(size, PoseLens::Perspective),
             Some("orthographic") => parallel(frame.pixels_per_unit, size),
             Some(other) => Err(format!("there is no projection {other:?}")),
         };

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Refusal, framing, items};
 use crate::base::math;
-use crate::scene::{Command, Item, ObjectId, Pose, Scene, Tracked, View};
+use crate::scene::{Command, Item, ObjectId, Observer, Pose, Scene, Tracked, View};
 
 /// The part of the scene that turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -24,8 +24,11 @@ pub enum Turn {
 /// returns the scene unchanged.
 ///
 /// # Errors
-/// If nothing is visible.
+/// If nothing is visible, or an object is the observer and the camera is to turn.
 pub fn turned(scene: &Scene, view: &View, turn: Turn, part: f64) -> Result<Scene, Refusal> {
+    if turn == Turn::Camera && view.observer == Observer::Object && view.object.is_some() {
+        return Err(Refusal::ObjectLooks);
+    }
     let visible = scene.objects.iter().filter(|(_, object)| object.visible);
     let ids: Vec<ObjectId> = visible.map(|(id, _)| id).collect();
     let sphere = framing::sphere(scene, view, &ids).ok_or(Refusal::NothingToFrame)?;

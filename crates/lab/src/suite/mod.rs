@@ -150,8 +150,18 @@ impl SuiteScene {
     }
 
     /// Returns the command that repeats the measurement.
-    pub fn command(&self) -> String {
-        format!("marraztu lab --suite={}", self.word)
+    fn command(&self, detail: &SuiteDetail) -> String {
+        let Size { width, height } = detail.size;
+        // The names of the suite each stand for a detail; the size is independent of it.
+        let (word, usual) = match detail.detail == SuiteDetail::TINY.detail {
+            true => ("tiny", SuiteDetail::TINY.size),
+            false => (self.word, SuiteDetail::WHOLE.size),
+        };
+        let size = match detail.size == usual {
+            true => String::new(),
+            false => format!(" --size {width}x{height}"),
+        };
+        format!("marraztu lab --suite={word}{size}")
     }
 }
 
@@ -196,7 +206,7 @@ fn measured(
     let findings = bench.run(found, &mut |_| {})?;
     Ok(Report {
         scene: format!("suite scene {}", suite.word),
-        command: suite.command(),
+        command: suite.command(detail),
         measure: Measure::Rmse,
         region: Region::Whole,
         budgets: Budgets::default(),
