@@ -387,6 +387,22 @@ fn invalid_items_of_a_scene_are_refused_by_name() {
         let text = changed(from, to).unwrap_err().to_string();
         assert!(text.contains(reason), "{to}: {text}");
     }
+    let emission = |emission: &str| {
+        let black = "(ambient: (0, 0, 0), diffuse: (0, 0, 0), specular: (0, 0, 0), exponent: 1";
+        let material = format!("material: Own({black}, emission: {emission})),");
+        changed("material: Preset(\"ruby\"),", &material)
+            .map(|_| ())
+            .map_err(|error| error.to_string())
+    };
+    assert_eq!(emission("(0, 0.5, 20)"), Ok(()), "light has no largest value");
+    for (wrong, reason) in [
+        ("(NaN, 0.5, 0)", "its material has a number that is infinite or NaN"),
+        ("(0, inf, 0)", "its material has a number that is infinite or NaN"),
+        ("(0, 0.5, -5)", "an emission and an exponent of at least 0"),
+    ] {
+        let text = emission(wrong).unwrap_err();
+        assert!(text.contains(reason), "{wrong}: {text}");
+    }
 }
 
 #[test]

@@ -14,7 +14,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use self::gif::GifWriter;
 use super::error::reason;
-use super::picture::{check_picture_target, save_picture, sides_of};
+use super::picture::{check_layer_target, check_picture_target, save_picture, sides_of};
 use super::replace::{SaveError, Worth, check_target, replace};
 use super::sources::Sources;
 use marraztu_core::base::image::{Picture, Size};
@@ -22,6 +22,9 @@ use marraztu_core::base::image::{Picture, Size};
 /// The shortest time of a picture of a GIF, in hundredths of a second: browsers show a picture of
 /// one hundredth for ten.
 const LEAST_GIF_TIME: u32 = 2;
+
+/// The longest time of a picture in its units, which a GIF and an animated PNG store in 16 bits.
+const MOST_TIME: u32 = u16::MAX as u32;
 
 /// The format of an animation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,7 +81,14 @@ impl Animation {
 
     /// Returns the time of picture `i` of a GIF in hundredths of a second.
     fn gif_time(&self, i: u32) -> u32 {
-        self.time(i, 100.0).max(LEAST_GIF_TIME)
+        self.time(i, 100.0).clamp(LEAST_GIF_TIME, MOST_TIME)
+    }
+
+    /// Returns the units per second of an animated PNG: the finest that hold the times.
+    fn png_units(&self) -> u16 {
+        let longest = |units: u16| self.seconds * f64::from(units) / f64::from(self.frames.max(1));
+        let fits = |units: &u16| longest(*units) <= f64::from(MOST_TIME);
+        [1000, 100, 10].into_iter().find(fits).unwrap_or(1)
     }
 
     /// Returns the duration of the animation as a GIF, in seconds.
@@ -144,10 +154,8 @@ impl AnimationWriter {
                 Err(fail("a file with this name exists and is not a GIF; choose another name"))
             }
             AnimationFormat::Gif => check_target(path),
-            AnimationFormat::Apng if path.extension().is_some_and(|it| it == "apng") => {
-                check_target(path)
-            }
-            AnimationFormat::Apng => check_picture_target(path),
+            // It is a PNG, but the ending .apng is not one of pictures.
+            AnimationFormat::Apng => check_layer_target(path),
             AnimationFormat::Frames if path.is_file() => {
                 Err(fail("a file with this name exists; choose another name for the folder"))
             }
@@ -204,10 +212,12 @@ impl AnimationWriter {
             Encoder::Gif(writer) => writer.push(picture).map_err(|error| fail(error.to_string())),
             Encoder::Apng(writer) => {
                 // A single picture is a plain PNG, without times.
-                let time = u16::try_from(animation.time(i, 1000.0)).unwrap_or(u16::MAX);
+                let units = animation.png_units();
+                let time = animation.time(i, f64::from(units));
+                let time = u16::try_from(time).unwrap_or(u16::MAX);
                 let timed = match animation.frames {
                     1 => Ok(()),
-                    _ => writer.set_frame_delay(time, 1000),
+                    _ => writer.set_frame_delay(time, units),
                 };
                 let bytes = match animation.transparent {
                     true => picture.pixels().as_flattened().to_vec(),
@@ -251,14 +261,22 @@ fn notes(path: &Path, animation: &Animation, encoder: &Encoder) -> Vec<String> {
     match encoder {
         Encoder::Gif(_) => {
             let seconds = animation.gif_seconds();
+            let takes = format!("{} pictures take {seconds} seconds", animation.frames);
             // Each time is rounded to a hundredth, and so is their sum.
-            let is_longer = seconds > animation.seconds + 0.01;
-            let note = format!(
-                "a GIF shows at most 50 pictures a second: {} pictures take {seconds} seconds; \
-                 choose fewer pictures, or an animated PNG",
-                animation.frames
-            );
-            is_longer.then_some(note).into_iter().collect()
+            let note = if seconds > animation.seconds + 0.01 {
+                format!(
+                    "a GIF shows at most 50 pictures a second: {takes}; choose fewer pictures, or \
+                     an animated PNG"
+                )
+            } else if seconds < animation.seconds - 0.01 {
+                format!(
+                    "a GIF shows a picture for at most 655 seconds: {takes}; choose more pictures, \
+                     or an animated PNG"
+                )
+            } else {
+                return Vec::new();
+            };
+            vec![note]
         }
         Encoder::Apng(_) => Vec::new(),
         Encoder::Frames => stale(path, animation).into_iter().collect(),
@@ -369,6 +387,41 @@ mod tests {
     }
 
     #[test]
+    fn long_times_are_kept_or_noted() {
+        let of = |frames, seconds| Animation { seconds, ..animation(frames) };
+        // By hand: 3600 s / 2 exceed 65535 hundredths, but not tenths.
+        for (frames, seconds, units) in
+            [(60, 4.0, 1000), (2, 131.07, 1000), (2, 131.1, 100), (2, 3600.0, 10), (1, 1e9, 1)]
+        {
+            assert_eq!(of(frames, seconds).png_units(), units, "{frames} {seconds}");
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let apng = folder.path().join("long.png");
+        let mut writer = AnimationWriter::begin(&apng, of(2, 600.0), &Sources::default()).unwrap();
+        for _ in 0..2 {
+            writer.push(&Picture::filled(SIZE, [9, 9, 9, 255])).unwrap();
+        }
+        writer.finish().unwrap();
+        let file = std::io::BufReader::new(fs::File::open(&apng).unwrap());
+        let decoder = image::codecs::png::PngDecoder::new(file).unwrap().apng().unwrap();
+        let frames: Vec<Frame> = decoder.into_frames().collect_frames().unwrap();
+        let times = frames.iter().map(|it| it.delay().numer_denom_ms());
+        assert!(
+            times.clone().all(|(ms, by)| ms == 300_000 * by),
+            "{:?}",
+            times.collect::<Vec<_>>()
+        );
+        let notes = |frames, seconds| {
+            let path = folder.path().join("long.gif");
+            let writer = AnimationWriter::begin(&path, of(frames, seconds), &Sources::default());
+            writer.unwrap().notes().join("")
+        };
+        assert_eq!(notes(6, 3600.0), "");
+        assert!(notes(2, 3600.0).contains("2 pictures take 1310.7 seconds; choose more"));
+        assert!(notes(100, 1.0).contains("100 pictures take 2 seconds; choose fewer"));
+    }
+
+    #[test]
     fn a_still_part_of_a_gif_does_not_flicker() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.gif");
@@ -421,9 +474,13 @@ mod tests {
         let check =
             |name: &str| AnimationWriter::check(&folder.path().join(name), &Sources::default());
         fs::write(folder.path().join("poem.gif"), "Roses").unwrap();
+        fs::write(folder.path().join("poem.apng"), "Roses").unwrap();
+        fs::write(folder.path().join("poem.APNG"), "Roses").unwrap();
         fs::write(folder.path().join("poem"), "Roses").unwrap();
-        assert!(check("a.gif").is_ok() && check("a.png").is_ok() && check("a").is_ok());
-        for wrong in ["a.mp4", "poem.gif", "poem", "none/a.gif"] {
+        for right in ["a.gif", "a.GIF", "a.png", "a.PNG", "a.apng", "a.APNG", "a"] {
+            assert!(check(right).is_ok(), "{right}");
+        }
+        for wrong in ["a.mp4", "poem.gif", "poem.apng", "poem.APNG", "poem", "none/a.gif"] {
             assert!(check(wrong).is_err(), "{wrong}");
         }
     }

@@ -142,13 +142,15 @@ fn note_missing_owners(scene: &Scene, findings: &mut Findings) {
 pub(super) fn read_material(material: &MaterialChoice) -> Result<MaterialChoice, String> {
     if let MaterialChoice::Own(own) = material {
         let colors = [own.ambient, own.diffuse, own.specular].concat();
-        finite("its material", &colors)?;
-        finite("its material", &[own.exponent])?;
-        let right = colors.iter().all(|x| (0.0..=1.0).contains(x)) && own.exponent >= 0.0;
+        // Emission is light, which has no largest value.
+        let positive = [&own.emission[..], &[own.exponent]].concat();
+        finite("its material", &[&colors[..], &positive].concat())?;
+        let right =
+            colors.iter().all(|x| (0.0..=1.0).contains(x)) && positive.iter().all(|x| *x >= 0.0);
         if !right {
-            return Err(
-                "its material needs colours from 0 to 1 and an exponent of at least 0".into()
-            );
+            return Err("its material needs colours from 0 to 1, and an emission and an exponent \
+                of at least 0"
+                .into());
         }
     }
     Ok(material.clone())
