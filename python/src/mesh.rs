@@ -58,7 +58,7 @@ impl Reading {
                 let found = UpAxis::ALL.into_iter().find(|axis| axis.word() == word);
                 found.ok_or_else(|| Failure::value("up is x, y, z, -x, -y or -z"))?
             }
-            None => io::stated_up(path).map(|stated| stated.up).unwrap_or_default(),
+            None => io::usual_up(path),
         };
         let scale = Scale::new(self.scale);
         let bumps = match &*self.bump_maps {

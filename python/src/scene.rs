@@ -13,8 +13,8 @@ use marraztu_core::base::color::Color;
 use marraztu_core::base::image::Size;
 use marraztu_core::edit::{framing, items, lighting, selection};
 use marraztu_core::scene::{
-    self as core, Command, Fill, Item, ItemId, LightId, MaterialChoice, Object, ObjectId, Pose,
-    Sides, Tracked, View,
+    self as core, Command, Fill, Item, ItemId, LightId, MaterialChoice, Object, ObjectId, Observer,
+    Pose, Projection, Sides, Tracked, View,
 };
 use marraztu_io::{self as io, Progress};
 use pyo3::prelude::*;
@@ -150,14 +150,14 @@ impl State {
 
     /// Frames everything from a direction, in radians. Models without a scene are lit for that
     /// view. An empty scene stays as it is.
-    fn frame(&self, from: [f64; 2]) -> Result<core::Scene, Failure> {
+    fn frame(&self, view: &View, from: [f64; 2]) -> Result<core::Scene, Failure> {
         let mut scene = self.scene.clone();
         let from = from.map(f64::to_degrees);
-        if let Ok(command) = framing::models(&scene, &self.view, from) {
+        if let Ok(command) = framing::models(&scene, view, from) {
             command.apply(&mut scene).map_err(Failure::value)?;
         }
         if self.is_lit
-            && let Ok(command) = lighting::models(&scene, &self.view)
+            && let Ok(command) = lighting::models(&scene, view)
         {
             command.apply(&mut scene).map_err(Failure::value)?;
         }
@@ -172,26 +172,35 @@ impl State {
         if let Some(scene) = &self.presented {
             return Ok(scene.clone());
         }
-        let scene = self.frame(framing::MODELS_FROM.map(f64::to_radians))?;
+        let scene = self.frame(&self.view, framing::MODELS_FROM.map(f64::to_radians))?;
         self.presented = Some(scene.clone());
         Ok(scene)
     }
 
-    /// Returns the scene as this camera sees it.
-    fn aimed(&mut self, aim: Option<&Aim>) -> Result<core::Scene, Failure> {
+    /// Returns the scene with this camera, and the view through it. A camera that is given is the
+    /// observer, and has its own lens, whatever the view of a file.
+    fn aimed(&mut self, aim: Option<&Aim>) -> Result<(core::Scene, View), Failure> {
+        let mut view = self.view.clone();
         match aim {
-            None => self.presented(),
-            Some(Aim::From(right, up)) => self.frame([*right, *up]),
+            None => Ok((self.presented()?, view)),
+            Some(Aim::From(right, up)) => {
+                view.observer = Observer::Camera;
+                Ok((self.frame(&view, [*right, *up])?, view))
+            }
             Some(Aim::Pose(rows, tangent)) => {
+                view.observer = Observer::Camera;
+                if tangent.is_some() {
+                    view.projection = Projection::Perspective;
+                }
                 let mut scene = self.presented()?;
                 let pose = Pose::from_matrix(values::matrix(*rows));
                 let invalid =
                     || Failure::value("the pose of a camera is a rotation and a position");
                 let pose = pose.ok_or_else(invalid)?;
                 let half_angle = tangent.map(|tangent| libm::atan(tangent).to_degrees());
-                let command = framing::from_pose(&scene, &self.view, pose, half_angle);
+                let command = framing::from_pose(&scene, &view, pose, half_angle);
                 command.apply(&mut scene).map_err(Failure::value)?;
-                Ok(scene)
+                Ok((scene, view))
             }
         }
     }
@@ -416,9 +425,9 @@ impl Scene {
         let size = Size::new(side(width)?, side(height)?);
         work(py, 0, |_| {
             let mut state = self.lock()?;
-            let scene = state.aimed(aim.as_ref())?;
+            let (scene, view) = state.aimed(aim.as_ref())?;
             let settings = values::settings(&state.settings, preset, &choices)?;
-            let shot = accuracy::Shot::new(&scene, &state.view, &settings, size);
+            let shot = accuracy::Shot::new(&scene, &view, &settings, size);
             Ok(Shot::new(shot, state.ids.clone()))
         })
     }

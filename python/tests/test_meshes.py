@@ -49,6 +49,16 @@ def test_options_of_files(tmp_path):
             mz.Mesh.load(path, **wrong)
 
 
+def test_stl_files_stand_on_the_plane_of_the_table(tmp_path):
+    """As on the command line, z is up in STL files."""
+    path = tmp_path / "a.stl"
+    corners = ["vertex 0 0 0", "vertex 1 0 0", "vertex 0 2 3"]
+    facet = ["facet normal 0 0 0", "outer loop", *corners, "endloop", "endfacet"]
+    path.write_text("\n".join(["solid a", *facet, "endsolid a"]))
+    assert np.allclose(mz.Mesh.load(path).bounds, [[0, 0, -2], [1, 3, 0]])
+    assert np.allclose(mz.Mesh.load(path, up="y").bounds, [[0, 0, 0], [1, 2, 3]])
+
+
 def test_arrays_draw_like_the_same_file(tmp_path):
     rng = np.random.default_rng(1)
     vertices = rng.normal(size=(40, 3))

@@ -160,6 +160,31 @@ def test_the_camera_of_a_picture_draws_the_same_pixels(cam):
         assert differing < 0.01, differing
 
 
+def test_a_camera_looks_with_its_own_lens_whatever_the_scene_file_says(tmp_path):
+    cameras = [mz.Camera(yfov=0.8, pose=mz.Camera.look_at((40, 90, 300), (0, 0, 0)).pose())]
+    cameras += [mz.Camera.around(0.4, 0.3)]
+
+    def pictures(view):
+        path = tmp_path / "a.marraztu"
+        path.write_text(
+            f"""(
+                version: 1,
+                objects: [(id: 1, name: "ball", model: Own("sphere"), material: Preset("ruby"))],
+                cameras: [(id: 2, name: "camera 1", eye: (0.0, 20.0, 160.0))],
+                lights: [(id: 3, name: "sun", slot: 1, kind: Sun(direction: (-0.6, -0.8, 0.0)))],
+                view: (object: Some(1), camera: 2, {view}),
+            )"""
+        )
+        scene = mz.Scene.load(path)
+        return [scene.render(48, 48, camera=camera).rgba.copy() for camera in cameras]
+
+    posed, around = pictures("")
+    assert all(len(np.unique(it.reshape(-1, 4), axis=0)) > 10 for it in (posed, around))
+    for ours, expected in zip(pictures("observer: Object"), (posed, around), strict=True):
+        assert np.array_equal(ours, expected)
+    assert np.array_equal(pictures("projection: Orthographic")[0], posed)
+
+
 @pytest.mark.parametrize("size", [(64, 48), (48, 64), (50, 50)])
 def test_yfov_is_the_vertical_angle(quad, size):
     picture = mz.Scene([quad]).render(*size, camera=mz.Camera(yfov=0.8))

@@ -97,8 +97,9 @@ class Mesh:
         """Loads an .obj, .obj.gz or .stl file, with its MTL files and textures.
 
         `up` is the axis of the file that points up: x, y, z, -x, -y or -z; by default the axis
-        stated in its comments, or y. `crease` is in radians, and used if the file has neither
-        normals nor smoothing groups. Repairs are warnings (`FindingWarning`) and in `findings`.
+        stated in its comments, z for STL, or y. `crease` is in radians, and used if the file has
+        neither normals nor smoothing groups. Repairs are warnings (`FindingWarning`) and in
+        `findings`.
 
         Raises `LoadError` with `file`, `line` and `reason`.
         """
