@@ -6,7 +6,7 @@
 use glam::{DMat3, DMat4, DVec3};
 use marraztu_core::base::color::Color;
 use marraztu_core::edit::copies::{self, Copies};
-use marraztu_core::edit::{GesturePhase, items, motion, several};
+use marraztu_core::edit::{Change, GesturePhase, items, motion, several};
 use marraztu_core::scene::{
     Aim, ItemId, Light, LightId, LightKind, Object, ObjectId, Orbit, Scene, Spin, SpotOwner,
     Subject, Tracked, Transformation,
@@ -44,8 +44,11 @@ fn a_change_of_the_orbit_of_several_bulbs_moves_none() {
     let places = |desk: &Desk| [BULB, other].map(|id| place(light(&desk.scene, id), 2.0));
     let before = places(&desk);
     close(before[1], DVec3::new(50.0 * 0.75_f64.sqrt(), 0.0, -25.0));
-    let stop = motion::toggle_orbit(&desk.scene, BULB, 2.0).unwrap();
-    desk.perform(Ok(several::spread(&desk.scene, stop, &[ItemId::Light(other)])));
+    desk.view.light = Some(BULB);
+    let others = [ItemId::Light(other)];
+    desk.perform(several::each_light(&desk.scene, &desk.view, &others, |scene, _, id| {
+        motion::toggle_orbit(scene, id, 2.0)
+    }));
     let orbits = [BULB, other].map(|id| *light(&desk.scene, id).kind.orbit().unwrap());
     assert_eq!(orbits.map(|orbit| (orbit.on, orbit.speed)), [(false, 30.0), (false, 60.0)]);
     for (now, before) in places(&desk).into_iter().zip(before) {
@@ -66,12 +69,18 @@ fn a_change_of_the_spin_of_several_objects_turns_none() {
     let before = objects(&desk);
     let others = [ItemId::Object(OBJECTS[1])];
     let first = GesturePhase::First;
-    let faster = Spin { axes: axes[0], speed: 45.0, since: 0.0 };
-    let faster = motion::set_spin(&desk.scene, OBJECTS[0], faster, 3.0, first).unwrap();
-    let applied = motion::apply_spin(&desk.scene, OBJECTS[0], 3.0).unwrap();
+    desk.view.object = Some(OBJECTS[0]);
+    let each = |act: &dyn Fn(&Scene, ObjectId) -> Change| {
+        several::each_object(&desk.scene, &desk.view, &others, |scene, _, id| act(scene, id))
+    };
+    let faster = each(&|scene, id| {
+        let own = scene.objects.get(id).unwrap().spin;
+        motion::set_spin(scene, id, Spin { speed: 45.0, ..own }, 3.0, first)
+    });
+    let applied = each(&|scene, id| motion::apply_spin(scene, id, 3.0));
     for (command, speeds) in [(faster, [45.0, 45.0]), (applied, [90.0, 20.0])] {
         let mut after = Desk { scene: desk.scene.clone(), view: desk.view.clone() };
-        after.perform(Ok(several::spread(&desk.scene, command, &others)));
+        after.perform(command);
         let spins = OBJECTS.map(|id| after.scene.objects.get(id).unwrap().spin);
         assert_eq!(spins.map(|spin| (spin.axes, spin.since)), axes.map(|axes| (axes, 3.0)));
         assert_eq!(spins.map(|spin| spin.speed), speeds);
@@ -88,10 +97,7 @@ fn several_lights_get_the_whole_colour_even_of_one_that_has_parts_of_it() {
     desk.view.light = Some(BULB);
     let (others, red) = ([ItemId::Light(other)], Color([255, 0, 0]));
     let set = |light: &mut Light| light.color = red;
-    let command = several::change_lights(&desk.scene, &desk.view, &others, set).unwrap();
-    // It is for all lights already, so a panel does not extend it.
-    assert_eq!(several::spread(&desk.scene, command.clone(), &others), command);
-    desk.perform(Ok(command));
+    desk.perform(several::change_lights(&desk.scene, &desk.view, &others, set));
     assert_eq!([BULB, other].map(|id| light(&desk.scene, id).color), [red, red]);
 }
 

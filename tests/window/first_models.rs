@@ -223,6 +223,32 @@ fn a_drop_on_the_untouched_first_scene_takes_its_place_and_one_undo_brings_it_ba
 }
 
 #[test]
+fn steps_chosen_after_a_drop_stay_over_undo_and_redo() {
+    let (_folder, path) = folder_with("cube.obj", CUBE);
+    let mut editor = Editor::new();
+    editor.drop_files(&[&path]);
+    editor.wait_until(|editor| editor.names() == ["cube"]);
+    let mut view = editor.view();
+    (view.steps.by_size, view.steps.translation) = (false, 3.0);
+    let chosen = view.steps;
+    editor.ask(Request::View(Box::new(view)));
+    editor.press(Lower(Key::X));
+    editor.press(Command(Key::Z));
+    assert_eq!(editor.view().steps, chosen);
+    // The first scene has its own steps, and the model has these again after redo.
+    editor.press(Command(Key::Z));
+    assert_eq!(editor.view().steps, Steps::DEFAULT);
+    editor.perform(marraztu::app::actions::Action::Redo);
+    assert_eq!(editor.view().steps, chosen);
+    // Another change instead of redo leads to no model.
+    editor.press(Command(Key::Z));
+    editor.press(Lower(Key::X));
+    editor.press(Command(Key::Z));
+    editor.perform(marraztu::app::actions::Action::Redo);
+    assert_eq!(editor.view().steps, Steps::DEFAULT);
+}
+
+#[test]
 fn a_drop_on_a_scene_that_was_changed_asks_for_a_material_and_joins_it() {
     let (_folder, path) = folder_with("cube.obj", CUBE);
     let mut editor = Editor::new();

@@ -63,7 +63,7 @@ fn with_camera() -> Editor {
 }
 
 /// Types into a field as a user does: a click, the text, Enter.
-fn type_into(editor: &mut Editor, field: &str, text: &str) {
+pub(crate) fn type_into(editor: &mut Editor, field: &str, text: &str) {
     click(editor, Role::SpinButton, field);
     type_text(editor, text);
     editor.press(Named(Key::Enter));

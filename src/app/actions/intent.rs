@@ -35,8 +35,8 @@ pub(crate) enum Intent {
     AskCamera,
     /// Start or stop measuring the effects of the picture.
     Measure,
-    /// Choose a picture as the texture of an object.
-    ChooseTexture(ObjectId),
+    /// Choose a picture as the texture of objects.
+    ChooseTexture(Vec<ObjectId>),
     /// Find out why an object cannot be seen.
     WhyUnseen(ObjectId),
     /// Scale the interface.

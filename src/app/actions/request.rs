@@ -71,8 +71,8 @@ pub enum Request {
     BeginRename(ItemId),
     /// Ends renaming, with a new name or without.
     EndRename(Option<String>),
-    /// Asks for a picture file as the texture of this object.
-    ChooseTexture(ObjectId),
+    /// Asks for a picture file as the texture of these objects.
+    ChooseTexture(Vec<ObjectId>),
     /// Loads these files, or opens the scene among them.
     LoadFiles(Vec<PathBuf>),
     /// Opens these files as if they were dropped on the window: if the first scene is untouched,
@@ -92,8 +92,8 @@ pub enum Request {
     Settle(usize),
     /// Removes all notices from the status line.
     ClearNotices,
-    /// Reads the model of an object again, with this axis of its file as the up axis.
-    TurnUp(ObjectId, UpAxis),
+    /// Reads the models of objects again, with this axis of their files as the up axis.
+    TurnUp(Vec<ObjectId>, UpAxis),
     /// Shows the unsaved work at this index.
     Recover(usize),
     /// Discards the unsaved work at this index.

@@ -93,7 +93,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::CopyMaterial => {
             object(state).map(|id| clipboard(ClipboardIntent::CopyMaterial(id)))
         }
-        Action::ChooseTexture => object(state).map(Intent::ChooseTexture),
+        Action::ChooseTexture => objects(state).map(Intent::ChooseTexture),
         Action::Split => items::split(scene, object(state)?).map(Intent::Change),
         Action::ToggleVisible => {
             selected(state)?;
@@ -207,18 +207,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         }),
         Action::ToggleObserver => seen(state, |view| selection::toggle_observer(scene, view)),
         Action::FrameSelection => {
-            let objects = state.selected().into_iter().chain(others.iter().copied());
-            let objects: Vec<ObjectId> = objects
-                .filter_map(|item| match item {
-                    ItemId::Object(id) => Some(id),
-                    ItemId::Camera(_) | ItemId::Light(_) => None,
-                })
-                .collect();
-            let framed = match objects.len() {
-                0 | 1 => framing::selection(scene, view),
-                _ => framing::objects(scene, view, &objects),
-            };
-            framed.map(Intent::Navigate)
+            framing::objects(scene, view, &objects(state)?).map(Intent::Navigate)
         }
         Action::FrameAll => framing::all(scene, view).map(Intent::Navigate),
         Action::LookFront => look_from(LookSide::Front),
@@ -321,6 +310,19 @@ fn add_shape(state: &State, shape: Shape) -> Resolved {
 fn add_light(state: &State, kind: LightKind) -> Resolved {
     let command = items::insert_light(&state.scene, kind)?;
     Ok(Intent::Add(command, Subject::Light))
+}
+
+/// Returns the selected objects; if only cameras or lights are selected, the object that was
+/// selected last.
+fn objects(state: &State) -> Result<Vec<ObjectId>, Refusal> {
+    let items = state.selected().into_iter().chain(state.others());
+    let objects: Vec<ObjectId> = items
+        .filter_map(|item| match item {
+            ItemId::Object(id) => Some(id),
+            ItemId::Camera(_) | ItemId::Light(_) => None,
+        })
+        .collect();
+    if objects.is_empty() { object(state).map(|id| vec![id]) } else { Ok(objects) }
 }
 
 /// Fails unless the keys act on objects.

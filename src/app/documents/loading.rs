@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::app::tasks::Task;
 use marraztu_core::base::Shared;
-use marraztu_core::scene::{LoadOptions, MaterialChoice, Model, Object, ObjectId, Texture};
+use marraztu_core::scene::{LoadOptions, MaterialChoice, Model, Object, ObjectId, Texture, UpAxis};
 use marraztu_io::{
     self as io, Finding, Fragment, LoadError, Loaded, Opened, SCENE_ENDING, SceneFileError,
 };
@@ -36,14 +36,14 @@ impl std::fmt::Debug for Queued {
 pub(crate) enum Fetched {
     /// A model; its material is asked for if not known.
     Model(Box<FetchedModel>),
-    /// A texture for an object.
-    Texture(ObjectId, Result<(Shared<Texture>, Vec<Finding>), LoadError>),
+    /// A texture for these objects.
+    Texture(Vec<ObjectId>, Result<(Shared<Texture>, Vec<Finding>), LoadError>),
     /// A scene.
     Scene(Box<Opening>),
     /// Items from the clipboard.
     Pasted(Result<Box<Fragment>, SceneFileError>),
-    /// The model of an object, with another axis of its file pointing up.
-    Turned(ObjectId, Result<Box<Loaded>, LoadError>),
+    /// Models of objects, with this axis of their files pointing up.
+    Turned(Vec<Turned>, UpAxis),
     /// Models read again.
     Again(Vec<Reread>),
     /// Missing files that were found.
@@ -68,6 +68,13 @@ pub(crate) struct Arrived {
     /// The text of its notice.
     pub(crate) said: String,
     pub(crate) findings: Vec<String>,
+}
+
+/// A model read with another axis up, for these objects.
+#[derive(Debug)]
+pub(crate) struct Turned {
+    pub(crate) ids: Vec<ObjectId>,
+    pub(crate) result: Result<Shared<Model>, LoadError>,
 }
 
 /// The result of reading a model again.

@@ -27,8 +27,8 @@ pub(crate) enum Wanted {
     TurntableTo,
     /// Export the scene.
     ExportTo,
-    /// Choose a texture for this object.
-    Texture(ObjectId),
+    /// Choose a texture for these objects.
+    Texture(Vec<ObjectId>),
     /// Choose a texture for the model in the material dialog.
     TextureOfModel,
     /// Find a missing file of the scene.

@@ -26,7 +26,9 @@ use marraztu_core::accuracy::{AccuracyPreset, Settings};
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::edit::{Gesture, items};
-use marraztu_core::scene::{LoadOptions, MaterialChoice, Object, ObjectId, Subject, Texture};
+use marraztu_core::scene::{
+    Command, LoadOptions, MaterialChoice, Object, ObjectId, Subject, Texture,
+};
 use marraztu_io::{self as io, Finding, LoadError, Loaded};
 use marraztu_render::Renderer;
 use marraztu_render::plan_frame;
@@ -70,7 +72,7 @@ impl App {
             (Wanted::Model, _) => self.load_files(ctx, paths),
             (Wanted::Dropped, _) => self.open_files(ctx, paths),
             (_, None) => {}
-            (Wanted::Texture(id), Some(path)) => self.load_texture(ctx, id, path),
+            (Wanted::Texture(ids), Some(path)) => self.load_texture(ctx, ids, path),
             (Wanted::TextureOfModel, Some(path)) => {
                 if let Some(dialog) = self.dialogs.material() {
                     dialog.set_texture(path);
@@ -129,12 +131,12 @@ impl App {
         });
     }
 
-    fn load_texture(&mut self, ctx: &Context, id: ObjectId, path: PathBuf) {
+    fn load_texture(&mut self, ctx: &Context, ids: Vec<ObjectId>, path: PathBuf) {
         let label = format!("Loading {}", file_name(&path));
         self.begin_loading(ctx, label, false, move |_| {
             let mut findings = Vec::new();
             let texture = io::load_texture_with(&path, &mut findings);
-            Fetched::Texture(id, texture.map(|texture| (texture, findings)))
+            Fetched::Texture(ids, texture.map(|texture| (texture, findings)))
         });
     }
 
@@ -212,17 +214,22 @@ impl App {
                 }
             }
             Fetched::Texture(_, Err(error)) => self.tell_load_error(&error),
-            Fetched::Texture(id, Ok((texture, findings))) => {
+            Fetched::Texture(ids, Ok((texture, findings))) => {
                 let notice = |finding: Finding| Notice::new(finding.to_string());
                 self.state.notices.extend(findings.into_iter().map(notice));
-                let set = |object: &mut Object| object.texture = Some(texture);
-                match items::change_object(&self.state.scene, id, set) {
-                    Ok(command) => self.change(command, Gesture::Whole, "Choose a texture"),
+                let set = |object: &mut Object| object.texture = Some(texture.clone());
+                let scene = &self.state.scene;
+                // Objects that were removed meanwhile are left out.
+                let ids = ids.into_iter().filter(|id| scene.objects.contains(*id));
+                match ids.map(|id| items::change_object(scene, id, set)).collect() {
+                    Ok(commands) => {
+                        self.change(Command::Batch(commands), Gesture::Whole, "Choose a texture");
+                    }
                     Err(refusal) => self.refuse(refusal.to_string()),
                 }
             }
             Fetched::Pasted(result) => self.take_pasted(result),
-            Fetched::Turned(id, result) => self.take_turned(id, result),
+            Fetched::Turned(read, up) => self.take_turned(read, up),
             Fetched::Again(all) => self.take_again(all),
             Fetched::Found(all) => self.take_found(all),
             Fetched::Scene(opening) => self.take_scene(ctx, *opening),

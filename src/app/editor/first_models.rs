@@ -18,7 +18,7 @@ use crate::app::widgets::text::{file_name, one_or_count};
 use marraztu_core::base::Shared;
 use marraztu_core::edit::{Gesture, Refusal, framing, items, lighting, presenting};
 use marraztu_core::scene::{
-    Command, Item, LoadOptions, MaterialChoice, Object, Pose, Scene, Steps, UpAxis, View,
+    Command, Item, LoadOptions, MaterialChoice, Object, Pose, Scene, UpAxis, View,
 };
 use marraztu_io::{self as io, LoadError, Loaded, Progress};
 
@@ -154,21 +154,23 @@ impl App {
                 self.replace(State::new(scene, view));
             }
             Arrival::Dropped => {
-                self.first_steps = Some(self.state.view.steps);
+                let steps = self.state.view.steps;
                 self.change_then(command, Gesture::Whole, label, |state| state.view = view);
+                self.first_steps = Some(steps);
             }
         }
         Ok(())
     }
 
-    /// Adjusts the step sizes to undo and redo across the replacement of the first scene: the first
-    /// scene gets its old steps, the new one gets steps by size.
-    pub(crate) fn follow_steps(&mut self) {
-        let Some(Steps { translation, by_size, .. }) = self.first_steps else { return };
-        let is_first = self.state.history.position() == 0;
-        let steps = &mut self.state.view.steps;
-        (steps.translation, steps.by_size) =
-            if is_first { (translation, by_size) } else { (steps.translation, true) };
+    /// Exchanges the step sizes if undo or redo has crossed the replacement of the first scene: the
+    /// first scene and the models each keep their own. `from` is the position before that.
+    pub(crate) fn follow_steps(&mut self, from: usize) {
+        let State { history, view, .. } = &mut self.state;
+        let has_crossed = (from == 0) != (history.position() == 0);
+        if let (Some(kept), true) = (&mut self.first_steps, has_crossed) {
+            std::mem::swap(&mut view.steps.translation, &mut kept.translation);
+            std::mem::swap(&mut view.steps.by_size, &mut kept.by_size);
+        }
     }
 }
 

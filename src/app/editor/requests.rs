@@ -137,7 +137,7 @@ impl App {
             Request::BeginRename(id) => state.renaming = Some(id),
             Request::EndRename(name) => self.end_rename(name),
             // Files.
-            Request::ChooseTexture(id) => self.ask_file(ctx, Wanted::Texture(id), ""),
+            Request::ChooseTexture(ids) => self.ask_file(ctx, Wanted::Texture(ids), ""),
             Request::LoadFiles(paths) => self.load_files(ctx, paths),
             Request::OpenFiles(paths) => self.open_files(ctx, paths),
             Request::AskModels => self.ask_file(ctx, Wanted::Dropped, ""),
@@ -161,7 +161,7 @@ impl App {
                 }
             }
             Request::ClearNotices => state.past_notices.clear(),
-            Request::TurnUp(id, up) => self.turn_up(ctx, id, up),
+            Request::TurnUp(ids, up) => self.turn_up(ctx, &ids, up),
             // Background work.
             Request::CancelLoading(at) => {
                 if let Some(loading) = self.loading.get(at) {
@@ -229,7 +229,7 @@ impl App {
                 self.dialogs.show(Dialog::Material(Box::new(MaterialDialog::of_camera())));
             }
             Ok(Intent::Measure) => self.measure(ctx),
-            Ok(Intent::ChooseTexture(id)) => self.ask_file(ctx, Wanted::Texture(id), ""),
+            Ok(Intent::ChooseTexture(ids)) => self.ask_file(ctx, Wanted::Texture(ids), ""),
             Ok(Intent::WhyUnseen(id)) => self.why_unseen(ctx, id),
             Ok(Intent::Zoom(zoom)) => ctx.set_zoom_factor(zoom),
             Ok(Intent::FitExposure) => self.fit_exposure(),
@@ -302,9 +302,9 @@ impl App {
                 let loaded = self.dialogs.material().and_then(|dialog| dialog.loaded.as_ref());
                 loaded.map(|(path, _)| path.clone())
             }
-            Wanted::Texture(id) => {
-                let object = self.state.scene.objects.get(*id);
-                object.and_then(|object| object.model.source.clone())
+            Wanted::Texture(ids) => {
+                let first = ids.first().and_then(|id| self.state.scene.objects.get(*id));
+                first.and_then(|object| object.model.source.clone())
             }
             _ => None,
         };
@@ -372,10 +372,15 @@ impl App {
         let acted_on = state.selected();
         let selected = Selected::of(&state.view, &state.several);
         let repeats = state.next_repeat(gesture);
+        let is_first = state.history.position() == 0;
         match state.history.perform(&mut state.scene, command, gesture, label) {
             // The selection before and after the step is recorded, so undo and redo restore it.
             Ok(()) => {
                 self.changes += 1;
+                // Redo no longer leads to models that replaced the first scene.
+                if is_first {
+                    self.first_steps = None;
+                }
                 (state.gesture, state.repeats) = (gesture, repeats);
                 state.message = None;
                 selection::follow(&before, &state.scene, &mut state.view);

@@ -1,18 +1,18 @@
 //! The up axis of a model's file: the axis that the file states, or else the user's last choice. An
 //! opened model is turned by reading it again.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use egui::Context;
 
 use super::App;
-use crate::app::documents::loading::Fetched;
+use crate::app::documents::loading::{Fetched, Turned};
 use crate::app::state::State;
-use crate::app::widgets::text::file_name;
+use crate::app::widgets::text::{file_name, one_or_count};
 use marraztu_core::base::Shared;
-use marraztu_core::edit::{Gesture, Refusal, framing, items};
-use marraztu_core::scene::{Command, LoadOptions, ObjectId, UpAxis};
-use marraztu_io::{self as io, LoadError, Loaded, is_example};
+use marraztu_core::edit::{Change, Gesture, framing, items};
+use marraztu_core::scene::{Command, LoadOptions, Model, ObjectId, UpAxis};
+use marraztu_io::{self as io, is_example};
 
 /// Returns the up axis for opening a model, and a sentence if it is not Y. It is the axis that the
 /// file states, or else the last choice.
@@ -32,57 +32,81 @@ pub(super) fn usual_up(path: &Path, last: UpAxis) -> (UpAxis, Option<String>) {
 }
 
 impl App {
-    /// Reads the model of an object again, with another axis of its file pointing up.
-    pub(crate) fn turn_up(&mut self, ctx: &Context, id: ObjectId, up: UpAxis) {
-        let Some(object) = self.state.scene.objects.get(id) else { return };
-        let Some(path) = object.model.source.clone().filter(|path| !is_example(path)) else {
-            return self.refuse(format!("{} was not loaded from a file", object.name));
-        };
+    /// Reads the models of objects again, with another axis of their files pointing up.
+    pub(crate) fn turn_up(&mut self, ctx: &Context, ids: &[ObjectId], up: UpAxis) {
+        let scene = &self.state.scene;
+        let objects = || ids.iter().filter_map(|id| Some((*id, scene.objects.get(*id)?)));
+        let Some((_, first)) = objects().next() else { return };
+        // Objects of one file are turned together, so it is read once.
+        let mut files: Vec<(PathBuf, LoadOptions, Vec<ObjectId>)> = Vec::new();
+        for (id, object) in objects() {
+            let Model { source, options, .. } = &*object.model;
+            let Some(path) = source.clone().filter(|path| !is_example(path)) else { continue };
+            let options = LoadOptions { up, ..*options };
+            match files.iter_mut().find(|file| file.0 == path && file.1 == options) {
+                Some((.., ids)) => ids.push(id),
+                None => files.push((path, options, vec![id])),
+            }
+        }
+        if files.is_empty() {
+            return self.refuse(format!("{} was not loaded from a file", first.name));
+        }
         self.state.up = up;
-        let options = LoadOptions { up, ..object.model.options };
-        let label = format!("Turning {}", file_name(&path));
-        self.begin_loading(ctx, label, false, move |progress| {
-            Fetched::Turned(id, io::load(&path, &options, progress).map(Box::new))
+        let what = one_or_count(&files, "models", |(path, ..)| file_name(path));
+        self.begin_loading(ctx, format!("Turning {what}"), false, move |progress| {
+            let read = |(path, options, ids): (PathBuf, LoadOptions, Vec<ObjectId>)| {
+                let result = io::load(&path, &options, progress);
+                Turned { ids, result: result.map(|loaded| Shared::new(loaded.model)) }
+            };
+            Fetched::Turned(files.into_iter().map(read).collect(), up)
         });
     }
 
-    /// Replaces a turned model in one step of undo. If it is the only object, the camera frames it
-    /// again.
-    pub(crate) fn take_turned(&mut self, id: ObjectId, read: Result<Box<Loaded>, LoadError>) {
-        match read {
-            Ok(loaded) => {
-                let up = loaded.model.options.up.word().to_uppercase();
-                match self.turned(id, *loaded) {
-                    Ok((command, name)) => {
-                        let label = format!("Turn {name} {up} up");
-                        self.change(command, Gesture::Whole, &label);
-                        self.state.tell(Some(format!("{name}: {up} is up")));
-                    }
-                    Err(refusal) => self.refuse(refusal.to_string()),
-                }
+    /// Replaces turned models in one step of undo. If the scene has no other objects, the camera
+    /// frames them again.
+    pub(crate) fn take_turned(&mut self, read: Vec<Turned>, up: UpAxis) {
+        let mut turned = Vec::new();
+        for Turned { ids, result } in read {
+            match result {
+                Ok(model) => turned.extend(ids.into_iter().map(|id| (id, model.clone()))),
+                Err(error) => self.tell_load_error(&error),
             }
-            Err(error) => self.tell_load_error(&error),
+        }
+        turned.retain(|(id, _)| self.state.scene.objects.contains(*id));
+        if turned.is_empty() {
+            return;
+        }
+        let up = up.word().to_uppercase();
+        let name = |(id, _): &(ObjectId, _)| {
+            self.state.scene.objects.get(*id).map_or_else(String::new, |it| it.name.clone())
+        };
+        let what = one_or_count(&turned, "objects", name);
+        match self.turned(turned) {
+            Ok(command) => {
+                self.change(command, Gesture::Whole, &format!("Turn {what} {up} up"));
+                self.state.tell(Some(format!("{what}: {up} is up")));
+            }
+            Err(refusal) => self.refuse(refusal.to_string()),
         }
     }
 
-    fn turned(&self, id: ObjectId, loaded: Loaded) -> Result<(Command, String), Refusal> {
+    fn turned(&self, models: Vec<(ObjectId, Shared<Model>)>) -> Change {
         let State { scene, view, .. } = &self.state;
-        let name = scene.objects.get(id).ok_or(Refusal::Gone)?.name.clone();
-        let model = Shared::new(loaded.model);
-        let parts = u32::try_from(model.mesh.parts().len()).unwrap_or(u32::MAX);
-        let command = items::change_object(scene, id, |object| {
-            object.model = model;
-            object.hidden_parts.retain(|part| *part < parts);
-        })?;
-        // Framing belongs to the same step of undo, since turning may move the model out of view.
-        let mut commands = vec![command.clone()];
-        let mut after = scene.clone();
-        command.apply(&mut after)?;
-        if scene.objects.len() == 1
-            && let Ok(framed) = framing::all(&after, view)
-        {
+        let are_all = models.len() == scene.objects.len();
+        let (mut commands, mut after) = (Vec::new(), scene.clone());
+        for (id, model) in models {
+            let parts = u32::try_from(model.mesh.parts().len()).unwrap_or(u32::MAX);
+            let command = items::change_object(scene, id, |object| {
+                object.model = model;
+                object.hidden_parts.retain(|part| *part < parts);
+            })?;
+            command.clone().apply(&mut after)?;
+            commands.push(command);
+        }
+        // Framing belongs to the same step of undo, since turning may move the models out of view.
+        if are_all && let Ok(framed) = framing::all(&after, view) {
             commands.push(framed);
         }
-        Ok((Command::Batch(commands), name))
+        Ok(Command::Batch(commands))
     }
 }

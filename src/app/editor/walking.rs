@@ -35,8 +35,9 @@ impl App {
         let before = self.state.scene.clone();
         self.changes += 1;
         self.state.message = None;
+        let from = self.state.history.position();
         let crossed = step(&mut self.state);
-        self.follow_steps();
+        self.follow_steps(from);
         let State { scene, view, several, gesture, .. } = &mut self.state;
         *gesture = Gesture::Whole;
         match selected {

@@ -235,7 +235,7 @@ fn up_axis_ui(ui: &mut Ui, state: &State, id: ObjectId, requests: &mut Requests)
     for up in [UpAxis::Y, UpAxis::Z] {
         let label = format!("{} up", up.word().to_uppercase());
         if ui.selectable_label(now == up, label).clicked() && now != up {
-            requests.push(Request::TurnUp(id, up));
+            requests.push(Request::TurnUp(vec![id], up));
         }
     }
 }

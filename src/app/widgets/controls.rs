@@ -12,6 +12,7 @@ use egui::{
 };
 
 use super::icons::Icon;
+use super::mixed::is_mixed;
 use super::regions;
 use crate::app::theme;
 
@@ -230,14 +231,15 @@ pub(crate) fn choices_in_rows(ui: &mut Ui, choices: &[Choice<'_>]) -> Option<usi
 }
 
 /// Shows options with values and hints in one row. `of` names the group for screen readers, and
-/// `now` is the chosen value. Returns the value of an option that was clicked.
+/// `now` is the chosen value, unless the choice is mixed. Returns the value of an option that was
+/// clicked.
 pub(crate) fn choose<T: Copy + PartialEq>(
     ui: &mut Ui,
     of: &str,
     now: T,
     all: &[(impl AsRef<str>, T, impl AsRef<str>)],
 ) -> Option<T> {
-    choices(ui, &options(of, now, all)).map(|clicked| all[clicked].1)
+    choices(ui, &options(ui, of, now, all)).map(|clicked| all[clicked].1)
 }
 
 /// Shows options as [`choose`] does, in as many rows as their labels need.
@@ -247,17 +249,20 @@ pub(crate) fn choose_in_rows<T: Copy + PartialEq>(
     now: T,
     all: &[(impl AsRef<str>, T, impl AsRef<str>)],
 ) -> Option<T> {
-    choices_in_rows(ui, &options(of, now, all)).map(|clicked| all[clicked].1)
+    choices_in_rows(ui, &options(ui, of, now, all)).map(|clicked| all[clicked].1)
 }
 
 fn options<'a, T: Copy + PartialEq>(
+    ui: &Ui,
     of: &str,
     now: T,
     all: &'a [(impl AsRef<str>, T, impl AsRef<str>)],
 ) -> Vec<Choice<'a>> {
-    all.iter()
-        .map(|(label, value, hint)| Choice::new(of, label.as_ref(), *value == now, hint.as_ref()))
-        .collect()
+    let now = (!is_mixed(ui.ctx(), of)).then_some(now);
+    let option = |(label, value, hint): &'a (_, T, _)| {
+        Choice::new(of, AsRef::as_ref(label), now == Some(*value), AsRef::as_ref(hint))
+    };
+    all.iter().map(option).collect()
 }
 
 fn choices_in(ui: &mut Ui, choices: &[Choice<'_>], columns: usize) -> Option<usize> {

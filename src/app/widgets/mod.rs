@@ -5,6 +5,7 @@ pub(crate) mod controls;
 pub(crate) mod expression;
 pub mod gestures;
 pub(crate) mod icons;
+pub(crate) mod mixed;
 pub(crate) mod number;
 pub(crate) mod plate;
 pub(crate) mod regions;

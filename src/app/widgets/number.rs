@@ -1,8 +1,10 @@
 //! Number fields: the value can be dragged, typed, or given as an expression.
 //!
 //! An idle field shows the digits that fit; a focused field shows all of them. Leaving a field
-//! without typing another number changes nothing, so tabbing through fields does not round values.
+//! without typing another number changes nothing, so tabbing through fields does not round values. A
+//! mixed field is empty while it is edited: any number typed into it is a change.
 
+use std::cell::Cell;
 use std::ops::RangeInclusive;
 
 use egui::text::CCursorRange;
@@ -11,6 +13,7 @@ use glam::{DMat3, DVec3};
 
 use super::expression;
 use super::gestures;
+use super::mixed::is_mixed;
 use crate::app::theme;
 use marraztu_core::base::math::Axis;
 use marraztu_core::edit::Gesture;
@@ -104,11 +107,15 @@ impl<'a> Number<'a> {
         let parsed = ctx.clone();
         let mixed = is_mixed(&ctx, &self.name);
         let edited = move || ctx.memory(|memory| memory.has_focus(id));
+        // Text that the field had when the user began to edit it.
+        let offered = if mixed { String::new() } else { exact(value) };
         let format = move |number: f64, _| match (edited(), mixed) {
-            (true, _) => exact(number),
+            (true, true) => String::new(),
+            (true, false) => exact(number),
             (false, true) => "mixed".to_owned(),
             (false, false) => short_in(number, room),
         };
+        let typed = Cell::new(false);
         // The range clamps only new input: values from files are shown as they are.
         let mut field = DragValue::new(&mut to)
             .speed(self.speed)
@@ -118,9 +125,10 @@ impl<'a> Number<'a> {
             .min_size(vec2(width, theme::ROW))
             .clip_text(true)
             .custom_formatter(format)
-            .custom_parser(move |text| {
+            .custom_parser(|text| {
                 let value = expression::value(text);
-                if value.is_none() {
+                typed.set(value.is_some());
+                if value.is_none() && !(mixed && text.is_empty()) {
                     say_bad_text(&parsed, text);
                 }
                 value
@@ -146,7 +154,7 @@ impl<'a> Number<'a> {
         if response.clicked() {
             // egui selects only the length of the idle text, which may be shorter than all digits.
             let mut state = TextEdit::load_state(ui.ctx(), id).unwrap_or_default();
-            state.cursor.set_char_range(Some(CCursorRange::select_all_str(&exact(value))));
+            state.cursor.set_char_range(Some(CCursorRange::select_all_str(&offered)));
             state.store(ui.ctx(), id);
         }
         let response = response.on_disabled_hover_text(self.hint).on_hover_ui(|ui| {
@@ -156,22 +164,8 @@ impl<'a> Number<'a> {
         // A focused field without another number typed into it reports no change.
         let to = if self.whole { to.round() } else { to };
         let changed = response.changed() && (response.dragged() || exact(to) != exact(value));
-        changed.then(|| (to, gestures::of(&response)))
+        (changed || mixed && typed.get()).then(|| (to, gestures::of(&response)))
     }
-}
-
-/// Marks fields by their names as "mixed" from now on: the selected items have different values.
-pub(crate) fn set_mixed(ctx: &Context, names: Vec<String>) {
-    ctx.data_mut(|data| data.insert_temp(mixed_names(), names));
-}
-
-fn is_mixed(ctx: &Context, name: &str) -> bool {
-    let is_it = |names: Vec<String>| names.iter().any(|other| other == name);
-    ctx.data(|data| data.get_temp(mixed_names())).is_some_and(is_it)
-}
-
-fn mixed_names() -> Id {
-    Id::unique("mixed numbers")
 }
 
 fn bad_text() -> Id {
@@ -188,18 +182,34 @@ pub(crate) fn take_bad_text(ctx: &Context) -> Option<String> {
     ctx.data_mut(|data| data.remove_temp(bad_text()))
 }
 
-/// Shows one copy of `field` for each axis in a row. Returns the vector that the user entered.
-pub(crate) fn vector(ui: &mut Ui, field: &Number<'_>, value: DVec3) -> Option<(DVec3, Gesture)> {
+/// A coordinate that the user entered.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Coordinate {
+    axis: Axis,
+    value: f64,
+}
+
+impl Coordinate {
+    /// Returns a vector with this coordinate.
+    pub(crate) fn set_in(self, mut vector: DVec3) -> DVec3 {
+        vector[self.axis.index()] = self.value;
+        vector
+    }
+}
+
+/// Shows one copy of `field` for each axis in a row. Returns the coordinate that the user entered.
+pub(crate) fn vector(
+    ui: &mut Ui,
+    field: &Number<'_>,
+    value: DVec3,
+) -> Option<(Coordinate, Gesture)> {
     ui.spacing_mut().item_spacing.x = theme::GAP;
     let width = (ui.available_width() - 2.0 * theme::GAP) / 3.0;
     let mut changed = None;
     for axis in Axis::ALL {
-        let i = axis.index();
         let number = field.clone().axis(axis);
-        if let Some((to, gesture)) = number.ui(ui, width, value[i]) {
-            let mut vector = value;
-            vector[i] = to;
-            changed = Some((vector, gesture));
+        if let Some((to, gesture)) = number.ui(ui, width, value[axis.index()]) {
+            changed = Some((Coordinate { axis, value: to }, gesture));
         }
     }
     changed

@@ -182,16 +182,25 @@ pub fn set_attenuation(scene: &Scene, id: LightId, to: Attenuation) -> Change {
     change_light(scene, id, |light| light.attenuation = to)
 }
 
-/// Switches the shadows of a light on or off.
+/// Switches the shadows of a light on if they are off, else off.
 ///
 /// # Errors
 /// If the light is ambient, or gone.
 pub fn toggle_shadows(scene: &Scene, id: LightId) -> Change {
     let light = scene.lights.get(id).ok_or(Refusal::Gone)?;
+    set_shadows(scene, id, !light.shadows)
+}
+
+/// Sets whether a light casts shadows.
+///
+/// # Errors
+/// If the light is ambient, or gone.
+pub fn set_shadows(scene: &Scene, id: LightId, to: bool) -> Change {
+    let light = scene.lights.get(id).ok_or(Refusal::Gone)?;
     if !light.can_cast_shadows() {
         return Err(Refusal::NoShadows);
     }
-    change_light(scene, id, |light| light.shadows = !light.shadows)
+    change_light(scene, id, |light| light.shadows = to)
 }
 
 /// Switches the shadows of the selected light on or off.

@@ -133,32 +133,6 @@ pub fn object(scene: &Scene, view: &View, id: ObjectId, to: DMat4, phase: Gestur
     set_transform::object(scene, view, id, to, phase)
 }
 
-/// Copies the numbers that changed from `old` to `new` into the placement `own`: of the position,
-/// and of the scale or else the rotation. `None` if the object would become flat.
-pub(super) fn alike(old: &DMat4, new: &DMat4, own: &DMat4) -> Option<DMat4> {
-    // Numbers that did not change, up to rounding, keep the object's value.
-    let chosen = |old: DVec3, new: DVec3, own: DVec3| {
-        let near = (old - new).abs().cmple(old.abs().max(new.abs()) * 1e-9);
-        (DVec3::select(near, own, new), near.all())
-    };
-    let place =
-        DVec3::select(translation(old).cmpeq(translation(new)), translation(own), translation(new));
-    let mut linear = DMat3::from_mat4(*own);
-    let (factors, same) = chosen(scale(old), scale(new), scale(own));
-    if same {
-        let (degrees, same) = chosen(turn_degrees(old), turn_degrees(new), turn_degrees(own));
-        if !same {
-            let [x, y, z] = turns(degrees).ok()?;
-            linear = x * y * z * turn(own).transpose() * linear;
-        }
-    } else {
-        let by = factors / scale(own);
-        linear = DMat3::from_cols(linear.x_axis * by.x, linear.y_axis * by.y, linear.z_axis * by.z);
-    }
-    let whole = linear.is_finite() && math::has_full_rank(linear);
-    whole.then(|| math::placed(linear, place))
-}
-
 /// Sets the eye of a camera. In analysis the camera keeps looking at its centre.
 ///
 /// # Errors

@@ -6,10 +6,9 @@
 
 use std::collections::BTreeSet;
 
-use super::{Change, GesturePhase, Refusal, items, motion, placement, selection};
+use super::{Change, Refusal, items, selection};
 use crate::scene::{
-    Anchor, AnchorMut, Camera, Command, Item, ItemId, LIGHT_NUMBERS, Light, LightId, LightKind,
-    Object, ObjectId, Scene, SpotOwner, Subject, Tracked, View,
+    CameraId, Command, ItemId, Light, LightId, Object, ObjectId, Scene, Subject, View,
 };
 
 /// The items that are selected in addition to the one that the keys act on.
@@ -118,6 +117,54 @@ pub fn toggle_locked(scene: &Scene, view: &View, others: &[ItemId]) -> Change {
     })
 }
 
+/// Applies `act` to each selected object, as [`each`] does to each item.
+///
+/// # Errors
+/// If no object is selected, or all refuse.
+pub fn each_object(
+    scene: &Scene,
+    view: &View,
+    others: &[ItemId],
+    act: impl Fn(&Scene, &View, ObjectId) -> Change,
+) -> Change {
+    each(scene, view, others, |scene, view| match selection::selected(view) {
+        Some(ItemId::Object(id)) => act(scene, view, id),
+        Some(ItemId::Camera(_) | ItemId::Light(_)) | None => Err(Refusal::NoObject),
+    })
+}
+
+/// Applies `act` to each selected camera, as [`each`] does to each item.
+///
+/// # Errors
+/// If no camera is selected, or all refuse.
+pub fn each_camera(
+    scene: &Scene,
+    view: &View,
+    others: &[ItemId],
+    act: impl Fn(&Scene, &View, CameraId) -> Change,
+) -> Change {
+    each(scene, view, others, |scene, view| match selection::selected(view) {
+        Some(ItemId::Camera(id)) => act(scene, view, id),
+        Some(ItemId::Object(_) | ItemId::Light(_)) | None => Err(Refusal::Gone),
+    })
+}
+
+/// Applies `act` to each selected light, as [`each`] does to each item.
+///
+/// # Errors
+/// If no light is selected, or all refuse.
+pub fn each_light(
+    scene: &Scene,
+    view: &View,
+    others: &[ItemId],
+    act: impl Fn(&Scene, &View, LightId) -> Change,
+) -> Change {
+    each(scene, view, others, |scene, view| match selection::selected(view) {
+        Some(ItemId::Light(id)) => act(scene, view, id),
+        Some(ItemId::Object(_) | ItemId::Camera(_)) | None => Err(Refusal::NoLight),
+    })
+}
+
 /// Changes all selected objects, even if the first one has the new value already.
 ///
 /// # Errors
@@ -128,10 +175,7 @@ pub fn change_objects(
     others: &[ItemId],
     change: impl Fn(&mut Object),
 ) -> Change {
-    each(scene, view, others, |scene, view| match selection::selected(view) {
-        Some(ItemId::Object(id)) => items::change_object(scene, id, &change),
-        Some(ItemId::Camera(_) | ItemId::Light(_)) | None => Err(Refusal::NoObject),
-    })
+    each_object(scene, view, others, |scene, _, id| items::change_object(scene, id, &change))
 }
 
 /// Changes all selected lights, even if the first one has the new value already.
@@ -144,260 +188,7 @@ pub fn change_lights(
     others: &[ItemId],
     change: impl Fn(&mut Light),
 ) -> Change {
-    each(scene, view, others, |scene, view| match selection::selected(view) {
-        Some(ItemId::Light(id)) => items::change_light(scene, id, &change),
-        Some(ItemId::Object(_) | ItemId::Camera(_)) | None => Err(Refusal::NoLight),
-    })
-}
-
-/// Extends a command to all items of a kind: a value that it changes in the selected item is set in
-/// the others, too. A command that already replaces one of the others, as those of [`each`] do, is
-/// returned unchanged.
-#[must_use]
-pub fn spread(scene: &Scene, command: Command, others: &[ItemId]) -> Command {
-    let Some(changed) = replaced(&command) else { return command };
-    if others.iter().any(|id| *id != changed.id() && replaces(&command, *id)) {
-        return command;
-    }
-    let mut commands = Vec::new();
-    for id in others {
-        commands.extend(alike(scene, changed, *id));
-    }
-    if commands.is_empty() {
-        return command;
-    }
-    commands.insert(0, command);
-    Command::Batch(commands)
-}
-
-/// Returns the first item that a command replaces.
-fn replaced(command: &Command) -> Option<&Item> {
-    match command {
-        Command::Replace(item) => Some(item),
-        Command::Batch(commands) => commands.first().and_then(replaced),
-        Command::Insert { .. }
-        | Command::Remove(_)
-        | Command::Reorder { .. }
-        | Command::Lock { .. }
-        | Command::Background(_)
-        | Command::NextId(_) => None,
-    }
-}
-
-/// Returns whether a command replaces an item.
-fn replaces(command: &Command, id: ItemId) -> bool {
-    match command {
-        Command::Replace(item) => item.id() == id,
-        Command::Batch(commands) => commands.iter().any(|command| replaces(command, id)),
-        Command::Insert { .. }
-        | Command::Remove(_)
-        | Command::Reorder { .. }
-        | Command::Lock { .. }
-        | Command::Background(_)
-        | Command::NextId(_) => false,
-    }
-}
-
-/// Sets the values that `changed` changes in another item of the same kind.
-fn alike(scene: &Scene, changed: &Item, other: ItemId) -> Option<Command> {
-    let item = match (changed, other) {
-        (Item::Object(id, to), ItemId::Object(other)) if *id != other => {
-            let before = scene.objects.get(*id)?;
-            if before.spin != to.spin {
-                return spin_alike(scene, before, to, other);
-            }
-            let mut object = scene.objects.get(other)?.clone();
-            let placement = object.placement.clone();
-            // A locked item takes all changes except the placement.
-            object_alike(before, to, &mut object)?;
-            if scene.locked.contains(&ItemId::Object(other)) {
-                object.placement = placement;
-            }
-            Item::Object(other, Box::new(object))
-        }
-        (Item::Camera(id, to), ItemId::Camera(other)) if *id != other => {
-            let mut camera = scene.cameras.get(other)?.clone();
-            let pose = camera.pose.clone();
-            camera_alike(scene.cameras.get(*id)?, to, &mut camera);
-            if scene.locked.contains(&ItemId::Camera(other)) {
-                camera.pose = pose;
-            }
-            Item::Camera(other, Box::new(camera))
-        }
-        (Item::Light(id, to), ItemId::Light(other)) if *id != other => {
-            let before = scene.lights.get(*id)?;
-            if before.kind.orbit() != to.kind.orbit() {
-                return orbit_alike(scene, before, to, other);
-            }
-            let mut light = scene.lights.get(other)?.clone();
-            let kind = light.kind.clone();
-            light_alike(before, to, &mut light);
-            if scene.locked.contains(&ItemId::Light(other)) {
-                light.kind = kind;
-            }
-            Item::Light(other, Box::new(light))
-        }
-        _ => return None,
-    };
-    Some(Command::Replace(item))
-}
-
-/// Changes the spin of another object as the selected one's was changed. Both keep their own
-/// rotations so far.
-fn spin_alike(scene: &Scene, before: &Object, after: &Object, other: ObjectId) -> Option<Command> {
-    let mut spin = scene.objects.get(other)?.spin;
-    for axis in 0..3 {
-        set(&before.spin.axes[axis], &after.spin.axes[axis], &mut spin.axes[axis]);
-    }
-    set(&before.spin.speed, &after.spin.speed, &mut spin.speed);
-    let phase = phase_of(&before.placement, &after.placement);
-    motion::set_spin(scene, other, spin, after.spin.since, phase).ok()
-}
-
-/// Changes the orbit of another bulb as the selected one's was changed. Both keep their own
-/// positions.
-fn orbit_alike(scene: &Scene, before: &Light, after: &Light, other: LightId) -> Option<Command> {
-    let (old, new) = (before.kind.orbit()?, after.kind.orbit()?);
-    let mut orbit = *scene.lights.get(other)?.kind.orbit()?;
-    set(&old.on, &new.on, &mut orbit.on);
-    set(&old.speed, &new.speed, &mut orbit.speed);
-    let phase = match (before.kind.anchor(), after.kind.anchor()) {
-        (Anchor::Position(old), Anchor::Position(new)) => phase_of(old, new),
-        _ => GesturePhase::First,
-    };
-    motion::set_orbit(scene, other, orbit, new.since, phase).ok()
-}
-
-/// Sets a field if it was changed.
-fn set<T: PartialEq + Clone>(before: &T, after: &T, own: &mut T) {
-    if before != after {
-        own.clone_from(after);
-    }
-}
-
-/// Takes the coordinates that were changed, and keeps the others.
-fn vector(before: glam::DVec3, after: glam::DVec3, own: glam::DVec3) -> glam::DVec3 {
-    glam::DVec3::select(before.cmpeq(after), own, after)
-}
-
-fn object_alike(before: &Object, after: &Object, own: &mut Object) -> Option<()> {
-    set(&before.visible, &after.visible, &mut own.visible);
-    set(&before.material, &after.material, &mut own.material);
-    set(&before.surface, &after.surface, &mut own.surface);
-    set(&before.texture, &after.texture, &mut own.texture);
-    set(&before.tint, &after.tint, &mut own.tint);
-    set(&before.opacity, &after.opacity, &mut own.opacity);
-    set(&before.edge_color, &after.edge_color, &mut own.edge_color);
-    set(&before.sides, &after.sides, &mut own.sides);
-    set(&before.file_normals, &after.file_normals, &mut own.file_normals);
-    // Another model is not spread, but another crease angle of the same model is.
-    if before.model != after.model && before.model.shares_file_with(&after.model) {
-        let crease = after.model.options.crease;
-        if items::why_no_crease(&own.model, own.file_normals).is_none() {
-            own.model = crate::base::Shared::new(own.model.with_crease(crease));
-        }
-    }
-    let (old, new) = (before.placement.now(), after.placement.now());
-    if old != new {
-        let m = *own.placement.now();
-        let to = placement::alike(old, new, &m)?;
-        own.placement = follow(&before.placement, &after.placement, &own.placement, to);
-    }
-    Some(())
-}
-
-/// Pushes the old value of an item if the command pushed the selected item's value.
-fn follow<T: Clone>(
-    before: &Tracked<T>,
-    after: &Tracked<T>,
-    own: &Tracked<T>,
-    to: T,
-) -> Tracked<T> {
-    phase_of(before, after).apply(own, to)
-}
-
-/// Returns the phase of the gesture that changed a value: the first change pushes the old one.
-fn phase_of<T>(before: &Tracked<T>, after: &Tracked<T>) -> GesturePhase {
-    if after.depth() > before.depth() { GesturePhase::First } else { GesturePhase::Continued }
-}
-
-fn camera_alike(before: &Camera, after: &Camera, own: &mut Camera) {
-    let lens = &after.lens;
-    set(&before.visible, &after.visible, &mut own.visible);
-    set(&before.material, &after.material, &mut own.material);
-    set(&before.lens.half_angle, &lens.half_angle, &mut own.lens.half_angle);
-    set(&before.lens.near, &lens.near, &mut own.lens.near);
-    set(&before.lens.far, &lens.far, &mut own.lens.far);
-    set(&before.lens.half_size, &lens.half_size, &mut own.lens.half_size);
-    set(&before.lens.parallel_near, &lens.parallel_near, &mut own.lens.parallel_near);
-    set(&before.lens.parallel_far, &lens.parallel_far, &mut own.lens.parallel_far);
-    let (old, new) = (before.pose.now(), after.pose.now());
-    if old != new {
-        let mut to = *own.pose.now();
-        to.eye = vector(old.eye, new.eye, to.eye);
-        set(&old.axes, &new.axes, &mut to.axes);
-        own.pose = follow(&before.pose, &after.pose, &own.pose, to);
-    }
-}
-
-fn light_alike(before: &Light, after: &Light, own: &mut Light) {
-    let attenuation = &after.attenuation;
-    set(&before.on, &after.on, &mut own.on);
-    if own.can_cast_shadows() {
-        set(&before.shadows, &after.shadows, &mut own.shadows);
-    }
-    for channel in 0..3 {
-        set(&before.color.0[channel], &after.color.0[channel], &mut own.color.0[channel]);
-    }
-    set(&before.attenuation.constant, &attenuation.constant, &mut own.attenuation.constant);
-    set(&before.attenuation.linear, &attenuation.linear, &mut own.attenuation.linear);
-    set(&before.attenuation.quadratic, &attenuation.quadratic, &mut own.attenuation.quadratic);
-    if std::mem::discriminant(&after.kind) == std::mem::discriminant(&own.kind) {
-        kind_alike(&before.kind, &after.kind, &mut own.kind);
-    }
-}
-
-/// Sets the changed values of a light in another light of the same kind.
-fn kind_alike(before: &LightKind, after: &LightKind, own: &mut LightKind) {
-    for number in LIGHT_NUMBERS {
-        let (old, new) = ((number.get)(before), (number.get)(after));
-        if let (Some(old), Some(new), Some(own)) = (old, new, (number.get_mut)(own)) {
-            set(&old, &new, own);
-        }
-    }
-    match (before.anchor(), after.anchor(), own.anchor_mut()) {
-        (Anchor::Direction(old), Anchor::Direction(new), AnchorMut::Direction(direction))
-            if old.now() != new.now() =>
-        {
-            *direction = follow(old, new, direction, *new.now());
-        }
-        (Anchor::Position(old), Anchor::Position(new), AnchorMut::Position(position))
-            if old.now() != new.now() =>
-        {
-            let to = vector(*old.now(), *new.now(), *position.now());
-            *position = follow(old, new, position, to);
-        }
-        (Anchor::Owner(old), Anchor::Owner(new), AnchorMut::Owner(owner)) => {
-            owner_alike(old, new, owner);
-        }
-        _ => {}
-    }
-}
-
-fn owner_alike(before: &SpotOwner, after: &SpotOwner, own: &mut SpotOwner) {
-    match (before, after, &mut *own) {
-        (SpotOwner::Fixed(old), SpotOwner::Fixed(new), SpotOwner::Fixed(aim))
-            if old.now() != new.now() =>
-        {
-            let mut to = *aim.now();
-            let (was, is) = (old.now(), new.now());
-            to.position = vector(was.position, is.position, to.position);
-            set(&was.direction, &is.direction, &mut to.direction);
-            *aim = follow(old, new, aim, to);
-        }
-        (SpotOwner::Fixed(_), SpotOwner::Fixed(_), _) => {}
-        (old, new, own) => set(old, new, own),
-    }
+    each_light(scene, view, others, |scene, _, id| items::change_light(scene, id, &change))
 }
 
 /// Returns all listed items of the subject's list. If all of these are already selected, the listed

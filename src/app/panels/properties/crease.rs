@@ -31,8 +31,9 @@ impl Shown<'_> {
             changed = Waiting::until_let_go(ui, waiting, changed);
         }
         if let Some((crease, gesture)) = changed.and_then(|(to, by)| Some((Crease::new(to)?, by))) {
-            let command = items::set_crease(&self.state.scene, self.id, crease);
-            self.change(requests, "Change the crease angle of", gesture, command);
+            self.change(requests, "Change the crease angle of", gesture, |scene, _, id| {
+                items::set_crease(scene, id, crease)
+            });
         }
     }
 }

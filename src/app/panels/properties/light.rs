@@ -3,6 +3,7 @@
 use egui::{ComboBox, Slider, Ui};
 use glam::DVec3;
 
+use super::several::label;
 use super::{number_row, steps_ui};
 use crate::app::actions::{Action, Request, Requests, change};
 use crate::app::state::State;
@@ -10,23 +11,33 @@ use crate::app::theme;
 use crate::app::widgets::color_picker::swatch;
 use crate::app::widgets::controls::{Switch, row, section};
 use crate::app::widgets::gestures;
+use crate::app::widgets::mixed::is_mixed;
 use crate::app::widgets::number::{Number, vector};
 use marraztu_core::base::color;
-use marraztu_core::edit::{Gesture, items, lights, motion, placement, several};
+use marraztu_core::edit::{
+    Change, Gesture, GesturePhase, Refusal, items, lights, motion, placement, several,
+};
 use marraztu_core::scene::{
-    Aim, Anchor, Attenuation, ItemId, Light, LightId, Orbit, Scene, SpotOwner, Tracked,
+    Anchor, Attenuation, ItemId, Light, LightId, Orbit, Scene, SpotOwner, Tracked, View,
 };
 
-/// The light in the panel.
+/// The light in the panel, and the other selected lights.
 struct Shown<'a> {
     state: &'a State,
+    others: &'a [ItemId],
     id: LightId,
     light: &'a Light,
 }
 
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests, id: LightId) {
+pub(crate) fn show(
+    ui: &mut Ui,
+    state: &State,
+    others: &[ItemId],
+    requests: &mut Requests,
+    id: LightId,
+) {
     let Some(light) = state.scene.lights.get(id) else { return };
-    let shown = Shown { state, id, light };
+    let shown = Shown { state, others, id, light };
     section(ui, "Colour", true, |ui| shown.color_ui(ui, requests));
     if light.kind.numbers().next().is_some() {
         section(ui, "Cone", true, |ui| shown.numbers_ui(ui, requests));
@@ -76,47 +87,57 @@ fn aim_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
 }
 
 impl Shown<'_> {
-    fn label(&self, verb: &str) -> String {
-        format!("{verb} {}", self.light.name)
+    /// Requests a change of each light, labelled with a verb and the name of the first.
+    fn change(
+        &self,
+        requests: &mut Requests,
+        verb: &str,
+        gesture: Gesture,
+        act: impl Fn(&Scene, &View, LightId) -> Change,
+    ) {
+        let State { scene, view, .. } = self.state;
+        let command = several::each_light(scene, view, self.others, act);
+        change(requests, label(verb, &self.light.name, self.others), gesture, command);
+    }
+
+    /// Requests a change of the properties of each light.
+    fn set(&self, requests: &mut Requests, verb: &str, gesture: Gesture, to: impl Fn(&mut Light)) {
+        self.change(requests, verb, gesture, |scene, _, id| items::change_light(scene, id, &to));
     }
 
     fn color_ui(&self, ui: &mut Ui, requests: &mut Requests) {
-        let Self { state, id, light } = *self;
-        let scene = &state.scene;
+        let Self { state, others: _, id, light } = *self;
         if Switch::new("Shines", light.on).ui(ui).on_hover_text(self.key_hint()).clicked() {
-            let command = items::toggle_shown(scene, ItemId::Light(id));
-            change(requests, self.label("Switch"), Gesture::Whole, command);
+            self.set(requests, "Switch", Gesture::Whole, |other| other.on = !light.on);
         }
         if light.can_cast_shadows() {
             let hint = "Lets objects cast shadows in this light; exact shadows need no bias";
             let switch = Switch::new("Casts shadows", light.shadows).ui(ui);
             if switch.on_hover_text(hint).clicked() {
-                let command = lights::toggle_shadows(scene, id);
-                change(requests, self.label("Shadows of"), Gesture::Whole, command);
+                self.change(requests, "Shadows of", Gesture::Whole, |scene, _, id| {
+                    lights::set_shadows(scene, id, !light.shadows)
+                });
             }
         }
         let channels = [("Red", "q and Q"), ("Green", "v and V"), ("Blue", "a and A")];
         for (i, (name, keys)) in channels.into_iter().enumerate() {
             if let Some((to, gesture)) = channel_ui(ui, name, keys, light.color.0[i]) {
-                let command = items::change_light(scene, id, |light| light.color.0[i] = to);
-                change(requests, self.label("Colour"), gesture, command);
+                self.set(requests, "Colour", gesture, |light| light.color.0[i] = to);
             }
         }
         row(ui, "Picker", |ui| {
             if let Some((color, gesture)) = swatch(ui, "Colour", "The light's colour", light.color)
             {
                 // All lights get the whole colour, even the channels that this one already has.
-                let (view, others) = (&state.view, state.others());
-                let set = |light: &mut Light| light.color = color;
-                let command = several::change_lights(scene, view, &others, set);
-                change(requests, self.label("Colour"), gesture, command);
+                self.set(requests, "Colour", gesture, |light| light.color = color);
             }
         });
         let hint = "The key from 0 to 9 that switches the light; each key belongs to one light";
         let number = Number::new("Key", hint).speed(0.05).range(0.0..=9999.0).whole();
         if let Some((to, gesture)) = number_row(ui, "Key", number, f64::from(light.slot)) {
-            let command = lights::set_slot(scene, id, whole(to));
-            change(requests, self.label("Key of"), gesture, command);
+            // No two lights have the same key.
+            let command = lights::set_slot(&state.scene, id, whole(to));
+            change(requests, format!("Key of {}", light.name), gesture, command);
         }
     }
 
@@ -133,8 +154,10 @@ impl Shown<'_> {
             row(ui, "Position", |ui| vector(ui, &Number::new("Position", hint), position));
         if let Some((to, gesture)) = changed {
             let phase = self.state.phase(gesture);
-            let command = placement::light_position(&self.state.scene, self.id, to, phase);
-            change(requests, self.label("Move"), gesture, command);
+            self.change(requests, "Move", gesture, |scene, _, id| {
+                let own = scene.lights.get(id).and_then(own_position).unwrap_or(position);
+                placement::light_position(scene, id, to.set_in(own), phase)
+            });
         }
     }
 
@@ -144,24 +167,33 @@ impl Shown<'_> {
         let changed = row(ui, "Direction", |ui| vector(ui, &field, direction));
         if let Some((to, gesture)) = changed {
             let phase = self.state.phase(gesture);
-            let command = placement::light_direction(&self.state.scene, self.id, to, phase);
-            change(requests, self.label("Turn"), gesture, command);
+            // All lights get the whole direction: normalising changes each of its coordinates.
+            let to = to.set_in(direction);
+            self.change(requests, "Turn", gesture, |scene, _, id| {
+                placement::light_direction(scene, id, to, phase)
+            });
         }
     }
 
     fn orbit_ui(&self, ui: &mut Ui, requests: &mut Requests, orbit: Orbit) {
-        let (scene, time) = (&self.state.scene, self.state.view.time);
+        let time = self.state.view.time;
+        let of = |scene: &Scene, id| -> Result<Orbit, Refusal> {
+            let light = scene.lights.get(id).ok_or(Refusal::Gone)?;
+            light.kind.orbit().copied().ok_or(Refusal::NotABulb)
+        };
         let hint = "Circles the world's Y axis";
         if Switch::new("Circles", orbit.on).ui(ui).on_hover_text(hint).clicked() {
-            let command = motion::toggle_orbit(scene, self.id, time);
-            change(requests, self.label("Circle"), Gesture::Whole, command);
+            self.change(requests, "Circle", Gesture::Whole, |scene, _, id| {
+                let to = Orbit { on: !orbit.on, ..of(scene, id)? };
+                motion::set_orbit(scene, id, to, time, GesturePhase::First)
+            });
         }
         let number = Number::new("Circling speed", "Degrees a second").suffix(" deg/s");
         if let Some((speed, gesture)) = number_row(ui, "Speed", number, orbit.speed) {
-            let to = Orbit { speed, ..orbit };
             let phase = self.state.phase(gesture);
-            let command = motion::set_orbit(scene, self.id, to, time, phase);
-            change(requests, self.label("Circle"), gesture, command);
+            self.change(requests, "Circle", gesture, |scene, _, id| {
+                motion::set_orbit(scene, id, Orbit { speed, ..of(scene, id)? }, time, phase)
+            });
         }
     }
 
@@ -170,8 +202,9 @@ impl Shown<'_> {
             let number = Number::new(row.name, row.hint).speed(row.speed);
             let number = number.range(0.0..=row.most_typed).suffix(row.suffix);
             if let Some((to, gesture)) = number_row(ui, row.label, number, now) {
-                let command = lights::set_number(&self.state.scene, self.id, row, to);
-                change(requests, self.label(row.step), gesture, command);
+                self.change(requests, row.step, gesture, |scene, _, id| {
+                    lights::set_number(scene, id, row, to)
+                });
             }
         }
     }
@@ -183,10 +216,12 @@ impl Shown<'_> {
         owners.extend(scene.objects.ids().map(SpotOwner::Object));
         owners.extend(scene.cameras.ids().map(SpotOwner::Camera));
         let fixed = matches!(owner, SpotOwner::Fixed(_)).then(|| owner.clone());
-        owners.push(fixed.unwrap_or_else(|| SpotOwner::Fixed(Tracked::new(self.aim(owner)))));
+        owners.push(fixed.unwrap_or_else(lights::fixed));
         row(ui, "Shines from", |ui| {
+            let mixed = is_mixed(ui.ctx(), "Owner");
+            let now = if mixed { "mixed".to_owned() } else { owner_name(scene, owner) };
             let combo = ComboBox::from_id_salt("owner")
-                .selected_text(owner_name(scene, owner))
+                .selected_text(now)
                 .width(ui.available_width())
                 .truncate();
             let shown = combo.show_ui(ui, |ui| {
@@ -197,10 +232,11 @@ impl Shown<'_> {
                         ui.allocate_space(size);
                         continue;
                     }
-                    let name = owner_name(scene, &to);
-                    if ui.selectable_label(to == *owner, name).clicked() && to != *owner {
-                        let command = lights::set_owner(scene, self.id, to);
-                        change(requests, self.label("Fix"), Gesture::Whole, command);
+                    let (name, on) = (owner_name(scene, &to), !mixed && to == *owner);
+                    if ui.selectable_label(on, name).clicked() && !on {
+                        self.change(requests, "Fix", Gesture::Whole, |scene, view, id| {
+                            lights::set_owner(scene, id, own_owner(scene, view, id, &to))
+                        });
                     }
                 }
             });
@@ -210,26 +246,43 @@ impl Shown<'_> {
         });
     }
 
-    /// Returns the current position and direction of the spot.
-    fn aim(&self, owner: &SpotOwner) -> Aim {
-        let nowhere = Aim { position: DVec3::ZERO, direction: DVec3::NEG_Z };
-        self.state.scene.aim(&self.state.view, owner).unwrap_or(nowhere)
-    }
-
     fn fading_ui(&self, ui: &mut Ui, requests: &mut Requests) {
         ui.weak("1 / (constant + linear d + quadratic d^2)");
         let now = self.light.attenuation;
-        let mut set = |label: &str, value: f64, to: &dyn Fn(f64) -> Attenuation| {
+        let mut set = |label: &str, value: f64, to: &dyn Fn(f64, Attenuation) -> Attenuation| {
             let number = Number::new(label, "At least 0; one of the three above 0");
             let number = number.speed(value.abs().max(1e-6) / 50.0).range(0.0..=1e12);
             if let Some((value, gesture)) = number_row(ui, label, number, value) {
-                let command = lights::set_attenuation(&self.state.scene, self.id, to(value));
-                change(requests, self.label("Attenuation of"), gesture, command);
+                self.change(requests, "Attenuation of", gesture, |scene, _, id| {
+                    let own = scene.lights.get(id).ok_or(Refusal::Gone)?.attenuation;
+                    lights::set_attenuation(scene, id, to(value, own))
+                });
             }
         };
-        set("Constant", now.constant, &|constant| Attenuation { constant, ..now });
-        set("Linear", now.linear, &|linear| Attenuation { linear, ..now });
-        set("Quadratic", now.quadratic, &|quadratic| Attenuation { quadratic, ..now });
+        set("Constant", now.constant, &|constant, own| Attenuation { constant, ..own });
+        set("Linear", now.linear, &|linear, own| Attenuation { linear, ..own });
+        set("Quadratic", now.quadratic, &|quadratic, own| Attenuation { quadratic, ..own });
+    }
+}
+
+/// Returns the position of a light that has one of its own.
+fn own_position(light: &Light) -> Option<DVec3> {
+    match light.kind.anchor() {
+        Anchor::Position(position) => Some(*position.now()),
+        Anchor::Owner(owner) => owner.fixed().map(|aim| aim.now().position),
+        Anchor::Everywhere | Anchor::Direction(_) => None,
+    }
+}
+
+/// Returns the owner to give to a spot: if `to` is a fixed position, the one that it has now.
+fn own_owner(scene: &Scene, view: &View, id: LightId, to: &SpotOwner) -> SpotOwner {
+    let owner = scene.lights.get(id).and_then(|light| light.kind.owner());
+    match (to, owner) {
+        (SpotOwner::Fixed(_), Some(SpotOwner::Fixed(own))) => SpotOwner::Fixed(own.clone()),
+        (SpotOwner::Fixed(_), Some(owner)) => scene
+            .aim(view, owner)
+            .map_or_else(lights::fixed, |aim| SpotOwner::Fixed(Tracked::new(aim))),
+        _ => to.clone(),
     }
 }
 

@@ -6,6 +6,7 @@ use super::number_row;
 use crate::app::theme;
 use crate::app::widgets::color_picker::swatch;
 use crate::app::widgets::controls::{self, row};
+use crate::app::widgets::mixed::is_mixed;
 use crate::app::widgets::number::Number;
 use crate::app::widgets::regions;
 use crate::app::widgets::spheres::{self, Sphere};
@@ -31,6 +32,8 @@ pub(crate) fn choice_ui(
     let file = coefficients(&MaterialChoice::File, object);
     cells.push((MaterialChoice::File, Sphere::File(file), "the file's own".to_owned()));
     cells.push((MaterialChoice::Own(own), Sphere::Own(own), "your own".to_owned()));
+    let mixed = is_mixed(ui.ctx(), "Material");
+    let on = cells.iter().position(|(to, ..)| !mixed && same_kind(choice, to));
     let mut chosen = None;
     ui.scope(|ui| {
         ui.spacing_mut().item_spacing = vec2(theme::GAP, theme::GAP);
@@ -38,7 +41,6 @@ pub(crate) fn choice_ui(
         let side = ((ui.available_width() - gaps) / f32::from(COLUMNS)).floor();
         let columns = usize::from(COLUMNS);
         let ids: Vec<Id> = (0..cells.len()).map(|i| ui.scope_id().with(("material", i))).collect();
-        let on = cells.iter().position(|(to, ..)| same_kind(choice, to));
         let stop = regions::stop(ui, &ids, on, columns);
         for (row, cells) in cells.chunks(columns).enumerate() {
             ui.horizontal(|ui| {
@@ -53,8 +55,7 @@ pub(crate) fn choice_ui(
             });
         }
     });
-    let on = cells.iter().find(|(to, ..)| same_kind(choice, to));
-    ui.label(on.map_or("", |(.., name)| name.as_str()));
+    ui.label(on.map_or("mixed", |on| cells[on].2.as_str()));
     if let MaterialChoice::Own(material) = choice {
         let edited = own_ui(ui, *material);
         chosen = chosen.or(edited.map(|(to, gesture)| (MaterialChoice::Own(to), gesture)));

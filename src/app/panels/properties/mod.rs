@@ -17,6 +17,7 @@ use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::controls::{self, Switch, row, section};
 use crate::app::widgets::icons::Icon;
+use crate::app::widgets::mixed::set_mixed;
 use crate::app::widgets::number::Number;
 use crate::app::widgets::text::file_name;
 use marraztu_core::edit;
@@ -30,18 +31,17 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     };
     title(ui, state, item);
     let others = several::note_ui(ui, state, item);
-    let asked = requests.len();
     // The ids of fields depend on the scene and the item. A number typed for one item never ends up
     // in another.
     let area = ScrollArea::vertical().id_salt("properties").auto_shrink(false);
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
         ui.push_id((state.generation, item), |ui| match item {
-            ItemId::Object(id) => object::show(ui, state, requests, id),
-            ItemId::Camera(id) => camera::show(ui, state, requests, id),
-            ItemId::Light(id) => light::show(ui, state, requests, id),
+            ItemId::Object(id) => object::show(ui, state, &others, requests, id),
+            ItemId::Camera(id) => camera::show(ui, state, &others, requests, id),
+            ItemId::Light(id) => light::show(ui, state, &others, requests, id),
         });
     });
-    several::spread(ui, state, &others, &mut requests[asked..]);
+    set_mixed(ui.ctx(), Vec::new());
 }
 
 fn title(ui: &mut Ui, state: &State, item: ItemId) {

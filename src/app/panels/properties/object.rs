@@ -5,38 +5,50 @@ use std::collections::BTreeSet;
 use egui::{Button, Id, Ui};
 use glam::{DMat3, DMat4, DVec3};
 
+use super::several::label;
 use super::{material, missing_ui, number_row, steps_ui};
 use crate::app::actions::{Request, Requests, change};
 use crate::app::state::State;
 use crate::app::widgets::color_picker::swatch;
 use crate::app::widgets::controls::{Switch, choose, fact, row, section};
+use crate::app::widgets::mixed::is_mixed;
 use crate::app::widgets::number::{Number, keep_angles, short, shown_angles, vector};
 use crate::app::widgets::text::grouped;
 use marraztu_core::base::Shared;
 use marraztu_core::base::math::{self, Axis};
+use marraztu_core::edit::angles::nearest;
 use marraztu_core::edit::{
-    Gesture, Refusal, arrange, items, motion, placement, several, transform,
+    Change, Gesture, GesturePhase, Refusal, arrange, items, motion, placement, several, transform,
 };
-use marraztu_core::scene::{Command, Frame, Model, Object, ObjectId, Sides, Spin, UpAxis};
+use marraztu_core::scene::{
+    Frame, ItemId, Model, Object, ObjectId, Scene, Sides, Spin, UpAxis, View,
+};
 use marraztu_io::is_example;
 
 const LETTERS: [&str; 3] = ["X", "Y", "Z"];
 
-/// The object in the panel.
+/// The object in the panel, and the other selected objects.
 pub(super) struct Shown<'a> {
     pub(super) state: &'a State,
+    pub(super) others: &'a [ItemId],
     pub(super) id: ObjectId,
     pub(super) object: &'a Object,
 }
 
-pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests, id: ObjectId) {
+pub(crate) fn show(
+    ui: &mut Ui,
+    state: &State,
+    others: &[ItemId],
+    requests: &mut Requests,
+    id: ObjectId,
+) {
     let Some(object) = state.scene.objects.get(id) else { return };
-    let shown = Shown { state, id, object };
+    let shown = Shown { state, others, id, object };
     missing_ui(ui, requests, object.missing_files());
     section(ui, "Transform", true, |ui| shown.placement_ui(ui, requests));
     section(ui, "Material", true, |ui| {
         if let Some((to, gesture)) = material::choice_ui(ui, &object.material, Some(object)) {
-            shown.set(requests, "Material of", gesture, |object| object.material = to);
+            shown.set(requests, "Material of", gesture, |object| object.material = to.clone());
         }
     });
     section(ui, "Surface", true, |ui| shown.surface_ui(ui, requests));
@@ -47,38 +59,43 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests, id: Obje
 }
 
 impl Shown<'_> {
-    /// Requests a change of the scene, labelled with a verb and the name of the object.
+    /// Requests a change of each object, labelled with a verb and the name of the first.
     pub(super) fn change(
         &self,
         requests: &mut Requests,
         verb: &str,
         gesture: Gesture,
-        command: Result<Command, Refusal>,
+        act: impl Fn(&Scene, &View, ObjectId) -> Change,
     ) {
-        change(requests, format!("{verb} {}", self.object.name), gesture, command);
+        let State { scene, view, .. } = self.state;
+        let command = several::each_object(scene, view, self.others, act);
+        change(requests, label(verb, &self.object.name, self.others), gesture, command);
     }
 
-    /// Requests a change of the object.
+    /// Requests a change of the properties of each object.
     pub(super) fn set(
         &self,
         requests: &mut Requests,
         verb: &str,
         gesture: Gesture,
-        to: impl FnOnce(&mut Object),
+        to: impl Fn(&mut Object),
     ) {
-        self.change(requests, verb, gesture, items::change_object(&self.state.scene, self.id, to));
+        self.change(requests, verb, gesture, |scene, _, id| items::change_object(scene, id, &to));
     }
 
     fn placement_ui(&self, ui: &mut Ui, requests: &mut Requests) {
-        let Self { state, id, object } = *self;
-        let (scene, view) = (&state.scene, &state.view);
+        let Self { state, id, object, others: _ } = *self;
         let placement = object.placement.now();
+        let of = |scene: &Scene, id| Some(*scene.objects.get(id)?.placement.now());
         let speed = (object.largest_extent() / 200.0).clamp(1e-3, 10.0);
         let field = Number::new("Position", "Position of the object's origin").speed(speed);
         let now = placement::translation(placement);
         if let Some((to, gesture)) = row(ui, "Position", |ui| vector(ui, &field, now)) {
-            let command = placement::object_translation(scene, view, id, to, state.phase(gesture));
-            self.change(requests, "Move", gesture, command);
+            let phase = state.phase(gesture);
+            self.change(requests, "Move", gesture, |scene, view, id| {
+                let own = placement::translation(&of(scene, id).ok_or(Refusal::Gone)?);
+                placement::object_translation(scene, view, id, to.set_in(own), phase)
+            });
         }
         let hint = "Degrees about X, then Y, then Z of the object";
         // Angles are not unique: those shown stay close to the user's input.
@@ -86,16 +103,23 @@ impl Shown<'_> {
         let given = shown_angles(ui, "rotation", canonical, object_turn);
         let field = Number::new("Rotation", hint).speed(0.5);
         if let Some((to, gesture)) = row(ui, "Rotation", |ui| vector(ui, &field, given)) {
-            keep_angles(ui, "rotation", to);
-            let command = placement::object_turn(scene, view, id, to, state.phase(gesture));
-            self.change(requests, "Rotate", gesture, command);
+            keep_angles(ui, "rotation", to.set_in(given));
+            let phase = state.phase(gesture);
+            self.change(requests, "Rotate", gesture, |scene, view, other| {
+                let own = placement::turn_degrees(&of(scene, other).ok_or(Refusal::Gone)?);
+                let own = if other == id { given } else { nearest(own, given, object_turn) };
+                placement::object_turn(scene, view, other, to.set_in(own), phase)
+            });
         }
         let hint = "Scale along the object's own axes relative to its file; negative mirrors";
         let field = Number::new("Scale", hint).speed(0.01);
         let now = placement::scale(placement);
         if let Some((to, gesture)) = row(ui, "Scale", |ui| vector(ui, &field, now)) {
-            let command = placement::object_scale(scene, view, id, to, state.phase(gesture));
-            self.change(requests, "Scale", gesture, command);
+            let phase = state.phase(gesture);
+            self.change(requests, "Scale", gesture, |scene, view, id| {
+                let own = placement::scale(&of(scene, id).ok_or(Refusal::Gone)?);
+                placement::object_scale(scene, view, id, to.set_in(own), phase)
+            });
         }
         self.stretch_ui(ui, requests);
         if let Some(size) = size(ui, id, object) {
@@ -103,6 +127,15 @@ impl Shown<'_> {
             fact(ui, "Size", &format!("{x} x {y} x {z}"));
         }
         self.up_axis_ui(ui, requests);
+    }
+
+    /// Returns the object in the panel and the others.
+    pub(super) fn ids(&self) -> Vec<ObjectId> {
+        let others = self.others.iter().filter_map(|other| match other {
+            ItemId::Object(id) => Some(*id),
+            ItemId::Camera(_) | ItemId::Light(_) => None,
+        });
+        [self.id].into_iter().chain(others).collect()
     }
 
     /// Shows the up axis of the model's file. The program's own models do not show it.
@@ -117,7 +150,7 @@ impl Shown<'_> {
         let axes = [UpAxis::Y, UpAxis::Z].into_iter().chain(third);
         let all: Vec<_> = axes.map(|up| (up.word().to_uppercase(), up, hint)).collect();
         if let Some(up) = row(ui, "Up axis", |ui| choose(ui, "Up axis", now, &all)) {
-            requests.push(Request::TurnUp(self.id, up));
+            requests.push(Request::TurnUp(self.ids(), up));
         }
     }
 
@@ -130,6 +163,7 @@ impl Shown<'_> {
         let field = Number::new("Stretch", hint).speed(0.01);
         let factors = row(ui, "Stretch", |ui| vector(ui, &field, DVec3::from_array(kept)));
         if let Some((to, _)) = factors {
+            let to = to.set_in(DVec3::from_array(kept));
             ui.data_mut(|data| data.insert_temp(id, to.to_array()));
         }
         let (axes, hint) = match state.view.frame {
@@ -144,44 +178,45 @@ impl Shown<'_> {
             if response.on_hover_text(hint).on_disabled_hover_text("Set a factor first").clicked() {
                 let factors = DVec3::from_array(kept);
                 let phase = state.phase(Gesture::Whole);
-                // Each object is stretched from its own placement.
-                let others = state.others();
-                let command = several::each(&state.scene, &state.view, &others, |scene, view| {
+                self.change(requests, "Stretch", Gesture::Whole, |scene, view, _| {
                     transform::stretch(scene, view, factors, phase)
                 });
-                self.change(requests, "Stretch", Gesture::Whole, command);
             }
         });
     }
 
     fn spin_ui(&self, ui: &mut Ui, requests: &mut Requests) {
-        let (scene, time) = (&self.state.scene, self.state.view.time);
-        let spin = self.object.spin;
+        let (spin, time) = (self.object.spin, self.state.view.time);
+        let of = |scene: &Scene, id| scene.objects.get(id).map(|object| object.spin);
         for axis in Axis::ALL {
-            let label = format!("About own {}", LETTERS[axis.index()]);
-            let response = Switch::new(&label, spin.axes[axis.index()]).ui(ui);
+            let i = axis.index();
+            let label = format!("About own {}", LETTERS[i]);
+            let response = Switch::new(&label, spin.axes[i]).ui(ui);
             let hint = "Spins the object; switching it off keeps the rotation so far";
             if response.on_hover_text(hint).clicked() {
-                let command = motion::toggle_spin(scene, self.id, axis, time);
-                self.change(requests, "Spin", Gesture::Whole, command);
+                self.change(requests, "Spin", Gesture::Whole, |scene, _, id| {
+                    let mut to = of(scene, id).ok_or(Refusal::Gone)?;
+                    to.axes[i] = !spin.axes[i];
+                    motion::set_spin(scene, id, to, time, GesturePhase::First)
+                });
             }
         }
         let number = Number::new("Spin speed", "Degrees a second").suffix(" deg/s");
         if let Some((speed, gesture)) = number_row(ui, "Speed", number, spin.speed) {
-            let (to, phase) = (Spin { speed, ..spin }, self.state.phase(gesture));
-            self.change(
-                requests,
-                "Spin",
-                gesture,
-                motion::set_spin(scene, self.id, to, time, phase),
-            );
+            let phase = self.state.phase(gesture);
+            self.change(requests, "Spin", gesture, |scene, _, id| {
+                let to = Spin { speed, ..of(scene, id).ok_or(Refusal::Gone)? };
+                motion::set_spin(scene, id, to, time, phase)
+            });
         }
         row(ui, "", |ui| {
-            let response = ui.add_enabled(spin.is_on(), Button::new("Apply rotation"));
+            let any = spin.is_on() || is_mixed(ui.ctx(), "Spin");
+            let response = ui.add_enabled(any, Button::new("Apply rotation"));
             let response = response.on_hover_text("Applies the rotation so far to the placement");
             if response.on_disabled_hover_text("The object does not spin").clicked() {
-                let command = motion::apply_spin(scene, self.id, time);
-                self.change(requests, "Apply the spin of", Gesture::Whole, command);
+                self.change(requests, "Apply the spin of", Gesture::Whole, |scene, _, id| {
+                    motion::apply_spin(scene, id, time)
+                });
             }
         });
     }
@@ -205,8 +240,9 @@ impl Shown<'_> {
             false => "The file has no normals: they are computed",
         };
         if file_normals.ui(ui).on_hover_text(hint).clicked() {
-            let toggle = |object: &mut Object| object.file_normals ^= true;
-            self.set(requests, "Change the normals of", Gesture::Whole, toggle);
+            let to = !object.file_normals;
+            let set = |object: &mut Object| object.file_normals = to;
+            self.set(requests, "Change the normals of", Gesture::Whole, set);
         }
         self.crease_ui(ui, requests);
         row(ui, "Edges", |ui| {

@@ -2,11 +2,10 @@
 
 use egui::{RichText, Ui};
 
-use crate::app::actions::Request;
 use crate::app::state::State;
-use crate::app::widgets::number::set_mixed;
-use marraztu_core::edit::{placement, several as together};
-use marraztu_core::scene::{Anchor, Attenuation, ItemId, Light, Scene};
+use crate::app::widgets::mixed::set_mixed;
+use marraztu_core::edit::placement;
+use marraztu_core::scene::{Anchor, Attenuation, ItemId, Light, Scene, SpotOwner};
 
 /// Reports the number of items that a change sets, and the properties in which they differ. Returns
 /// the other items of the same kind.
@@ -26,25 +25,18 @@ pub(super) fn note_ui(ui: &mut Ui, state: &State, item: ItemId) -> Vec<ItemId> {
     if differ.is_empty() {
         ui.weak("All have the same values.");
     } else {
-        ui.weak(format!("Mixed: {}", differ.join(", ")));
+        ui.weak(format!("Mixed: {}", differ.join(", ").to_lowercase()));
     }
     let numbers = others.iter().flat_map(|other| numbers(&state.scene, item, *other));
-    set_mixed(ui.ctx(), numbers.collect());
+    set_mixed(ui.ctx(), numbers.chain(differ.into_iter().map(str::to_owned)).collect());
     others
 }
 
-/// Extends every change requested by the panel to all items.
-pub(super) fn spread(ui: &Ui, state: &State, others: &[ItemId], requests: &mut [Request]) {
-    if others.is_empty() {
-        return;
-    }
-    set_mixed(ui.ctx(), Vec::new());
-    for request in requests {
-        if let Request::Change { command, label, .. } = request {
-            let one = command.clone();
-            *command = together::spread(&state.scene, one, others);
-            *label = format!("{label} and {} more", others.len());
-        }
+/// Returns the label of a change to an item and to others.
+pub(super) fn label(verb: &str, name: &str, others: &[ItemId]) -> String {
+    match others.len() {
+        0 => format!("{verb} {name}"),
+        more => format!("{verb} {name} and {more} more"),
     }
 }
 
@@ -153,7 +145,8 @@ fn mixed(scene: &Scene, first: ItemId, others: &[ItemId]) -> Vec<&'static str> {
     names
 }
 
-/// Names the properties that differ between two items of a kind.
+/// Names the properties that differ between two items of a kind. Choices have the names of their
+/// controls.
 fn differing(scene: &Scene, first: ItemId, other: ItemId) -> Vec<&'static str> {
     let rows: Vec<(bool, &'static str)> = match (first, other) {
         (ItemId::Object(a), ItemId::Object(b)) => {
@@ -165,19 +158,20 @@ fn differing(scene: &Scene, first: ItemId, other: ItemId) -> Vec<&'static str> {
             let near = |a: glam::DVec3, b: glam::DVec3| a.distance(b) <= 1e-9 * a.length().max(1.0);
             let turns = (placement::turn_degrees(m), placement::turn_degrees(n));
             vec![
-                (placement::translation(m) != placement::translation(n), "position"),
-                (!near(turns.0, turns.1), "rotation"),
-                (!near(placement::scale(m), placement::scale(n)), "scale"),
-                (a.material != b.material, "material"),
-                (a.surface != b.surface, "surface"),
-                (a.texture != b.texture, "texture"),
-                (a.tint != b.tint, "tint"),
-                (a.opacity != b.opacity, "opacity"),
-                (a.spin != b.spin, "spin"),
-                (a.sides != b.sides, "sides"),
-                (a.file_normals != b.file_normals, "normals"),
-                (a.edge_color != b.edge_color, "edges"),
-                (a.model.options.crease != b.model.options.crease, "crease"),
+                (placement::translation(m) != placement::translation(n), "Position"),
+                (!near(turns.0, turns.1), "Rotation"),
+                (!near(placement::scale(m), placement::scale(n)), "Scale"),
+                (a.material != b.material, "Material"),
+                (a.surface != b.surface, "Surface"),
+                (a.texture != b.texture, "Texture"),
+                (a.tint != b.tint, "Tint"),
+                (a.opacity != b.opacity, "Opacity"),
+                (a.spin != b.spin, "Spin"),
+                (a.sides != b.sides, "Sides"),
+                (a.file_normals != b.file_normals, "Normals"),
+                (a.edge_color != b.edge_color, "Edges"),
+                (a.model.options.crease != b.model.options.crease, "Crease"),
+                (a.model.options.up != b.model.options.up, "Up axis"),
             ]
         }
         (ItemId::Camera(a), ItemId::Camera(b)) => {
@@ -185,10 +179,10 @@ fn differing(scene: &Scene, first: ItemId, other: ItemId) -> Vec<&'static str> {
                 return Vec::new();
             };
             vec![
-                (a.pose.now().eye != b.pose.now().eye, "position"),
-                (a.pose.now().axes != b.pose.now().axes, "rotation"),
-                (a.lens != b.lens, "lens"),
-                (a.material != b.material, "material"),
+                (a.pose.now().eye != b.pose.now().eye, "Position"),
+                (a.pose.now().axes != b.pose.now().axes, "Rotation"),
+                (a.lens != b.lens, "Lens"),
+                (a.material != b.material, "Material"),
             ]
         }
         (ItemId::Light(a), ItemId::Light(b)) => {
@@ -199,15 +193,21 @@ fn differing(scene: &Scene, first: ItemId, other: ItemId) -> Vec<&'static str> {
                 light.kind.numbers().map(|(_, number)| number).collect()
             };
             vec![
-                (a.on != b.on, "on"),
-                (a.shadows != b.shadows, "shadows"),
-                (a.color != b.color, "colour"),
-                (a.attenuation != b.attenuation, "attenuation"),
-                (cone(a) != cone(b), "cone"),
-                (a.kind != b.kind, "place"),
+                (a.on != b.on, "On"),
+                (a.shadows != b.shadows, "Shadows"),
+                (a.color != b.color, "Colour"),
+                (a.attenuation != b.attenuation, "Attenuation"),
+                (cone(a) != cone(b), "Cone"),
+                (!same_owner(a.kind.owner(), b.kind.owner()), "Owner"),
+                (a.kind != b.kind, "Place"),
             ]
         }
         _ => Vec::new(),
     };
     rows.into_iter().filter_map(|(differ, name)| differ.then_some(name)).collect()
+}
+
+/// Returns whether two spots shine from the same item, or both from a place of their own.
+fn same_owner(a: Option<&SpotOwner>, b: Option<&SpotOwner>) -> bool {
+    matches!((a, b), (Some(SpotOwner::Fixed(_)), Some(SpotOwner::Fixed(_)))) || a == b
 }

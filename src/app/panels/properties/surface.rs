@@ -7,6 +7,7 @@ use super::object::Shown;
 use crate::app::actions::{Request, Requests};
 use crate::app::widgets::color_picker::swatch;
 use crate::app::widgets::controls::{choose, fact, row};
+use crate::app::widgets::mixed::is_mixed;
 use crate::app::widgets::number::Number;
 use crate::app::widgets::text::file_name;
 use marraztu_core::edit::Gesture;
@@ -54,13 +55,14 @@ impl Shown<'_> {
             (false, true) => "none".to_owned(),
             (false, false) => "none (no UV coordinates)".to_owned(),
         });
-        fact(ui, "Texture", &text);
+        let mixed = is_mixed(ui.ctx(), "Texture");
+        fact(ui, "Texture", if mixed { "mixed" } else { &text });
         row(ui, "", |ui| {
             let choose = ui.button("Choose...");
             if choose.on_hover_text("Chooses a picture as the texture of the object").clicked() {
-                requests.push(Request::ChooseTexture(self.id));
+                requests.push(Request::ChooseTexture(self.ids()));
             }
-            let remove = ui.add_enabled(by_hand.is_some(), egui::Button::new("Remove"));
+            let remove = ui.add_enabled(mixed || by_hand.is_some(), egui::Button::new("Remove"));
             let hint = "Removes the chosen texture";
             if remove.on_hover_text(hint).on_disabled_hover_text(hint).clicked() {
                 let remove = |object: &mut Object| object.texture = None;
