@@ -43,6 +43,18 @@ fn materials_and_pictures_that_nothing_uses_are_found() {
     let info = finding(SQUARE, &[("model.mtl", mtl)]);
     assert!(info.contains("the one with the model's name is used"), "{info}");
     assert!(!info.contains("silver"), "{info}");
+    // Only the first missing file is replaced, and not by a file that the model names itself.
+    let named = |names: &str| SQUARE.replace("a.mtl", names);
+    let info = finding(&named("a.mtl b.mtl"), &[("model.mtl", mtl)]);
+    assert!(
+        info.contains("\"a.mtl\" was not found; the one with the model's name is used"),
+        "{info}"
+    );
+    assert!(info.contains("\"b.mtl\" was not found (line 1)"), "{info}");
+    let info = finding(&named("b.mtl model.mtl c.mtl"), &[("model.mtl", mtl)]);
+    for name in ["b.mtl", "c.mtl"] {
+        assert!(info.contains(&format!("\"{name}\" was not found (line 1)")), "{info}");
+    }
     let info = finding(&SQUARE.replace("mtllib a.mtl\n", ""), &[("model.mtl", mtl)]);
     assert!(info.contains("names materials but no material file; \"model.mtl\" is used"), "{info}");
     let info = finding(CUBE, &[("model.mtl", mtl)]);

@@ -13,10 +13,12 @@
 use std::collections::HashMap;
 use std::fs::File;
 use std::io::Read;
+use std::iter;
 use std::path::Path;
 
 use super::error::LoadError;
 use super::findings::{FindingKind, Findings, joined};
+use super::obj::lines::unmarked;
 use super::obj::{Loaded, place};
 use super::packed::{model_name, unpacked_name};
 use super::progress::Progress;
@@ -75,7 +77,7 @@ fn size_of(count: usize) -> Option<usize> {
 
 /// Returns whether a text begins with `solid`, with a facet or the end after it.
 fn is_ascii(head: &[u8]) -> bool {
-    let head = head[..head.len().min(HEAD)].trim_ascii_start().to_ascii_lowercase();
+    let head = unmarked(&head[..head.len().min(HEAD)]).trim_ascii_start().to_ascii_lowercase();
     let text = String::from_utf8_lossy(&head);
     let mut words = text.split_ascii_whitespace();
     words.next() == Some("solid") && words.any(|word| word == "facet" || word == "endsolid")
@@ -127,7 +129,7 @@ pub(super) fn parse(
     let is_binary = binary_count(bytes).is_some_and(|count| size_of(count) == Some(bytes.len()));
     let solids = match is_binary || !is_ascii(bytes) {
         true => binary(bytes, file, &part)?,
-        false => ascii(bytes, file, &part)?,
+        false => ascii(unmarked(bytes), file, &part)?,
     };
     if solids.corners.is_empty() {
         return Err(LoadError::file(file, "the STL file has no triangles"));
@@ -171,44 +173,74 @@ fn ascii(bytes: &[u8], file: &str, progress: &Progress) -> Result<Solids, LoadEr
     let (mut read, mut number) = (0, 0);
     // The corners before the current facet, and whether it is open.
     let (mut facet, mut is_open) = (0, false);
-    for line in bytes.split(|byte| *byte == b'\n') {
-        if u32::is_multiple_of(number, 1 << 18) {
-            progress.reached(read, bytes.len())?;
-        }
+    for line in bytes.split(|byte| matches!(byte, b'\n' | b'\r')) {
+        let begin = read;
         read += line.len() + 1;
+        // CR LF is one line end.
+        if line.is_empty() && begin > 0 && bytes[begin - 1..].starts_with(b"\r\n") {
+            continue;
+        }
+        if u32::is_multiple_of(number, 1 << 18) {
+            progress.reached(begin, bytes.len())?;
+        }
         number = u32::saturating_add(number, 1);
         let wrong = |reason: String| LoadError::line(file, number, reason);
         let text = String::from_utf8_lossy(line);
-        let mut words = text.split_ascii_whitespace();
-        let Some(word) = words.next() else { continue };
-        match word.to_ascii_lowercase().as_str() {
-            "solid" => {
-                let name = words.collect::<Vec<_>>().join(" ");
-                solids.solids.push((name, solids.triangles()));
-            }
-            "facet" => (facet, is_open) = (solids.corners.len(), true),
-            "vertex" => {
-                let numbers = words.map(|word| word.parse::<f32>().ok());
-                let numbers: Option<Vec<f32>> = numbers.collect();
-                let corner = numbers.and_then(|numbers| <[f32; 3]>::try_from(numbers).ok());
-                let added = corner.and_then(|corner| solids.add(corner));
-                added.ok_or_else(|| wrong("a vertex has three finite numbers".to_owned()))?;
-            }
-            "endfacet" => {
-                let corners = solids.corners.len() - facet;
-                if corners != 3 {
-                    return Err(wrong(format!("the facet has {corners} corners instead of 3")));
+        let words: Vec<&str> = text.split_ascii_whitespace().collect();
+        for (word, arguments) in statements(&words) {
+            match word.to_ascii_lowercase().as_str() {
+                "solid" => solids.solids.push((arguments.join(" "), solids.triangles())),
+                "facet" => (facet, is_open) = (solids.corners.len(), true),
+                "vertex" => {
+                    let numbers = arguments.iter().map(|word| word.parse::<f32>().ok());
+                    let numbers: Option<Vec<f32>> = numbers.collect();
+                    let corner = numbers.and_then(|numbers| <[f32; 3]>::try_from(numbers).ok());
+                    let added = corner.and_then(|corner| solids.add(corner));
+                    added.ok_or_else(|| wrong("a vertex has three finite numbers".to_owned()))?;
                 }
-                is_open = false;
+                "endfacet" => {
+                    let corners = solids.corners.len() - facet;
+                    if corners != 3 {
+                        return Err(wrong(format!("the facet has {corners} corners instead of 3")));
+                    }
+                    is_open = false;
+                }
+                "outer" | "endloop" | "endsolid" => {}
+                _ => return Err(wrong(format!("{word:?} is not a statement of STL"))),
             }
-            "outer" | "endloop" | "endsolid" => {}
-            _ => return Err(wrong(format!("{word:?} is not a statement of STL"))),
         }
     }
     if is_open || !solids.corners.len().is_multiple_of(3) {
         return Err(LoadError::line(file, number, "the file ends within a facet"));
     }
     Ok(solids)
+}
+
+/// Splits the words of a line into statements, each with its arguments. Usually there is one.
+fn statements<'a>(mut words: &'a [&'a str]) -> impl Iterator<Item = (&'a str, &'a [&'a str])> {
+    iter::from_fn(move || {
+        let (word, after) = words.split_first()?;
+        let (arguments, next) = after.split_at(argument_count(word, after));
+        words = next;
+        Some((*word, arguments))
+    })
+}
+
+/// Returns the number of words that belong to a statement: all up to the next one in the line.
+fn argument_count(word: &str, after: &[&str]) -> usize {
+    const KEYWORDS: [&str; 6] = ["facet", "outer", "vertex", "endloop", "endfacet", "endsolid"];
+    let is = |word: &str, other: &str| word.eq_ignore_ascii_case(other);
+    // Names may contain keywords, so only a whole statement ends a name.
+    let is_facet = |pair: &[&str]| is(pair[0], "facet") && is(pair[1], "normal");
+    let facet = || after.windows(2).position(is_facet);
+    let end = match word.to_ascii_lowercase().as_str() {
+        "solid" => facet(),
+        "endsolid" => {
+            facet().and_then(|end| after[..end].iter().position(|word| is(word, "solid")))
+        }
+        _ => after.iter().position(|word| KEYWORDS.iter().any(|keyword| is(word, keyword))),
+    };
+    end.unwrap_or(after.len())
 }
 
 fn model(

@@ -181,6 +181,7 @@ fn decode_any(path: &Path, most: usize) -> Result<(DynamicImage, bool), LoadErro
         return Err(fail(unknown()));
     }
     let cut_off = reader.format() == Some(ImageFormat::Jpeg) && jpeg_ends_early(&bytes);
+    let states_no_alpha = reader.format() == Some(ImageFormat::Tga) && tga_states_no_alpha(&bytes);
     // Limits protect against small files that claim huge pictures.
     let mut limits = image::Limits::default();
     limits.max_image_width = Some(LARGEST_SIDE);
@@ -196,10 +197,17 @@ fn decode_any(path: &Path, most: usize) -> Result<(DynamicImage, bool), LoadErro
         DynamicImage::from_decoder(decoder).map(Some)
     };
     // A decoder that panics on a damaged file must not crash the editor.
-    let decoded = std::panic::catch_unwind(std::panic::AssertUnwindSafe(decoded))
+    let mut decoded = std::panic::catch_unwind(std::panic::AssertUnwindSafe(decoded))
         .map_err(|_panic| fail("the picture is damaged".to_owned()))?
         .map_err(|error| fail(reason(&error)))?
         .ok_or_else(|| too_many_texels(path))?;
+    // Some programs write alpha without stating it, so only an empty channel is ignored.
+    if states_no_alpha
+        && let DynamicImage::ImageRgba8(texels) = &mut decoded
+        && texels.pixels().all(|texel| texel.0[3] == 0)
+    {
+        texels.pixels_mut().for_each(|texel| texel.0[3] = 255);
+    }
     Ok((decoded, cut_off))
 }
 
@@ -213,6 +221,12 @@ fn picture(decoded: DynamicImage) -> Option<Picture> {
         other => other.into_rgba8().as_chunks().0.to_vec(),
     };
     Picture::from_pixels(size, texels)
+}
+
+/// Returns whether a TGA file has 32 bits per texel, but states that none of them are alpha
+/// ("Truevision TGA File Format Specification", 1991, fields 5.5 and 5.6).
+fn tga_states_no_alpha(bytes: &[u8]) -> bool {
+    bytes.get(16..18).is_some_and(|it| it[0] == 32 && it[1] & 15 == 0)
 }
 
 /// Returns whether a JPEG lacks its end marker: the decoder then fills the missing part.
@@ -282,6 +296,26 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_tga_without_attribute_bits_is_not_wholly_transparent() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.tga");
+        // An uncompressed picture of 2 x 1 texels: blue, green, red, alpha.
+        let pixel = |attributes: u8, alphas: [u8; 2]| {
+            let mut bytes = [0; 26];
+            bytes[2] = 2;
+            (bytes[12], bytes[14]) = (2, 1);
+            (bytes[16], bytes[17]) = (32, attributes);
+            bytes[18..].copy_from_slice(&[0, 0, 255, alphas[0], 9, 0, 0, alphas[1]]);
+            std::fs::write(&path, bytes).unwrap();
+            load_picture(&path).unwrap().pixels().to_vec()
+        };
+        assert_eq!(pixel(0, [0, 0]), [[255, 0, 0, 255], [0, 0, 9, 255]]);
+        // Some programs write alpha without stating it.
+        assert_eq!(pixel(0, [0, 200]), [[255, 0, 0, 0], [0, 0, 9, 200]]);
+        assert_eq!(pixel(8, [0, 0]), [[255, 0, 0, 0], [0, 0, 9, 0]]);
     }
 
     #[test]

@@ -69,7 +69,8 @@ pub(super) fn stated_in(bytes: &[u8]) -> Option<StatedUp> {
     let head = &bytes[..bytes.len().min(usize::try_from(HEAD).unwrap_or(usize::MAX))];
     let text = String::from_utf8_lossy(head);
     let text = text.strip_prefix('\u{FEFF}').unwrap_or(&text);
-    let comments = text.lines().map(str::trim).filter(|line| !line.is_empty());
+    let lines = text.split(['\n', '\r']);
+    let comments = lines.map(str::trim).filter(|line| !line.is_empty());
     let comments = comments.map_while(|line| line.strip_prefix('#'));
     comments.into_iter().find_map(|comment| {
         let comment = comment.trim_start_matches('#').trim();
@@ -79,31 +80,45 @@ pub(super) fn stated_in(bytes: &[u8]) -> Option<StatedUp> {
     })
 }
 
-/// Parses a comment in lower case: "z-up", "up axis: -y", "axis_forward=-z, up=y", "up: z forward:
-/// y".
+/// The words for the up axis in a comment.
+const UP: [&str; 3] = ["up", "upaxis", "upvector"];
+
+/// Words that may come between a direction and its axis.
+const SMALL: [&str; 4] = ["axis", "is", "vector", "points"];
+
+/// Parses a comment in lower case: "z-up", "up axis: -y", "axis_forward=-z, up=y".
 fn up_of(comment: &str) -> Option<UpAxis> {
     if WRITE_Z_UP.iter().any(|program| comment.contains(program)) {
         return Some(UpAxis::Z);
     }
     comment.split([',', ';', '|']).find_map(|clause| {
         let words = words(clause);
-        let at =
-            words.iter().position(|word| ["up", "upaxis", "upvector", "zup"].contains(&&**word))?;
+        let words: Vec<&str> = words.iter().map(String::as_str).collect();
+        let at = words.iter().position(|word| UP.contains(word) || *word == "zup")?;
         if words[at] == "zup" {
             return Some(UpAxis::Z);
         }
-        let small = |word: &&String| ["axis", "is", "vector", "points"].contains(&word.as_str());
-        // The axis follows "up" ("up axis: z") or precedes it ("z up, y forward").
-        let mut after = words[at + 1..].iter().filter(|word| !small(word));
-        let [next, second, third] = std::array::from_fn(|_| after.next().map(String::as_str));
-        let before = || words[..at].iter().rev().find(|word| !small(word));
-        let [next_axis, axis_before] = [next, before().map(String::as_str)].map(|it| axis(it?));
-        match second {
-            // "z up y forward", or "up z forward y".
-            Some("forward" | "front") => axis_before.or_else(|| next_axis.filter(|_| is_axis(third?))),
-            _ => next_axis.or(axis_before),
-        }
+        let is_full = |word: &&&str| !SMALL.contains(*word);
+        let before = words[..at].iter().rev().find(is_full).and_then(|word| axis(word));
+        let mut after = words[at + 1..].iter().filter(is_full);
+        let [next, second, third] = std::array::from_fn(|_| after.next().copied());
+        // "set up y forward" states no axis, but "up z forward y" does.
+        let is_other = second.is_some_and(is_forward) && !third.is_some_and(is_axis);
+        let after = next.filter(|_| !is_other).and_then(axis);
+        // The first word tells whether axes precede directions: "z up y forward", "up z forward y".
+        let is_direction = |word: &str| is_forward(word) || UP.contains(&word);
+        let first = words.iter().find(|word| is_axis(word) || is_direction(word));
+        if first.is_some_and(|word| is_axis(word)) { before.or(after) } else { after.or(before) }
     })
+}
+
+fn is_forward(word: &str) -> bool {
+    ["forward", "front", "back"].contains(&word)
+}
+
+/// Returns whether a word names an axis, including those that [`axis`] excludes.
+fn is_axis(word: &str) -> bool {
+    ["x", "y", "z"].contains(&word.trim_start_matches('-'))
 }
 
 /// Splits a clause into words. A minus sign belongs to a word if a separator precedes it.
@@ -155,6 +170,11 @@ mod tests {
             ("Up axis: Y, forward axis: -Z", UpAxis::Y),
             ("Y axis up, Z axis front", UpAxis::Y),
             ("Z up Y axis forward X right", UpAxis::Z),
+            ("-Z forward Y up X right", UpAxis::Y),
+            ("y forward up z", UpAxis::Z),
+            ("Back: -Y  Up: Z  Forward: Y", UpAxis::Z),
+            ("right-handed Z up Y forward", UpAxis::Z),
+            ("X = right  Z = up  Y = forward", UpAxis::Z),
             ("up: -Y", UpAxis::MinusY),
             ("OpenSCAD obj exporter", UpAxis::Z),
             ("Object Export From Tinkercad Server 2015", UpAxis::Z),
@@ -175,8 +195,10 @@ mod tests {
             "# set up a mesh\n# group z\nv 0 0 1",
             "# set up z forward\nv 0 0 1",
             "# looked up y front faces\nv 0 0 1",
+            "# scaled up x 2\nv 0 0 1",
             "v 0 0 1\n# z-up\n",
             "# 8 vertices\no up_z\n",
+            "# 8 vertices\ro up_z\r",
         ] {
             assert_eq!(stated_in(text.as_bytes()), None, "{text}");
         }

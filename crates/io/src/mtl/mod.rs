@@ -140,6 +140,11 @@ impl<'a> Library<'a> {
         self.findings.push(findings);
     }
 
+    /// Returns whether a file was read.
+    pub(super) fn has_read(&self, path: &Path) -> bool {
+        self.read.contains(path)
+    }
+
     /// Returns the number of materials.
     pub(super) fn count(&self) -> usize {
         self.materials.len()

@@ -27,6 +27,7 @@ mod sound;
 
 use std::collections::BTreeSet;
 use std::io::Read;
+use std::iter;
 use std::path::Path;
 
 use rayon::prelude::*;
@@ -295,12 +296,15 @@ fn own_library(
     let folder = path.parent().unwrap_or(Path::new(""));
     let shown = shown(path);
     let stem = model_name(&shown);
-    let mut own = |ending: &str| library.locator.locate(folder, &format!("{stem}.{ending}"));
+    let own = |library: &mut Library<'_>, ending: &str| {
+        library.locator.locate(folder, &format!("{stem}.{ending}"))
+    };
     let has_library = !content.libraries.is_empty() && missing.is_empty();
+    let mtl = if has_library { None } else { own(library, "mtl") };
     // Without such an MTL file, a picture of that name is worth a note.
-    let Some(mtl) = (if has_library { None } else { own("mtl") }) else {
+    let Some(mtl) = mtl.filter(|mtl| !library.has_read(mtl)) else {
         if content.libraries.is_empty()
-            && let Some(picture) = texture_endings().into_iter().find_map(own)
+            && let Some(picture) = texture_endings().into_iter().find_map(|it| own(library, it))
         {
             findings.add(FindingKind::PictureUnnamed, &short_name(&picture), None);
         }
@@ -315,9 +319,13 @@ fn own_library(
         return findings.add(FindingKind::MtlUnnamed, &short_name(&mtl), None);
     }
     library.read(&mtl, folder);
-    match missing.first() {
-        Some((line, name)) => findings.add(FindingKind::MtlRenamed, name, Some(*line)),
-        None => findings.add(FindingKind::MtlOfModel, &short_name(&mtl), None),
+    if missing.is_empty() {
+        findings.add(FindingKind::MtlOfModel, &short_name(&mtl), None);
+    }
+    // It replaces one file.
+    let kinds = iter::once(FindingKind::MtlRenamed).chain(iter::repeat(FindingKind::MtlMissing));
+    for ((line, name), kind) in missing.into_iter().zip(kinds) {
+        findings.add(kind, &name, Some(line));
     }
 }
 
