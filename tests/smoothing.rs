@@ -254,8 +254,8 @@ fn a_group_that_cannot_be_read_is_off_and_a_finding() {
     assert_eq!((finding.kind, finding.line), (FindingKind::SmoothingUnreadable, Some(9)));
     assert_eq!(
         finding.text,
-        "4 smoothing groups are neither numbers nor \"on\" or \"off\" (such as \"abc\") and are taken \
-         as off (first: line 9)"
+        "4 smoothing groups are neither numbers nor \"on\" or \"off\" (such as \"abc\") and are \
+         taken as off (first: line 9)"
     );
     assert_eq!(loaded.model.mesh.smoothing(), &Smoothing::Groups(vec![1, 0, 0, 0, 0, 1]));
 }

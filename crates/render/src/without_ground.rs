@@ -4,8 +4,9 @@
 //! colour, the two results are a C and a C + (1 - a), and their difference is the visible share of
 //! the background. Every effect that covers a pixel partly is therefore exact: samples, lines,
 //! transparency. If light is computed in linear values, colours are mixed linearly, so both results
-//! are decoded first. Only a picture at half resolution is enlarged in stored values all the same, so
-//! its edges in linear light are exact over black and white alone. Porter and Duff, "Compositing Digital Images", SIGGRAPH 1984.
+//! are decoded first. Only a picture at half resolution is enlarged in stored values all the same,
+//! so its edges in linear light are exact over black and white alone. Porter and Duff, "Compositing
+//! Digital Images", SIGGRAPH 1984.
 
 use super::frame::FramePlan;
 use super::frame::variants::Decoding;

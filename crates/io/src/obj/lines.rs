@@ -112,8 +112,8 @@ impl<'a> Lines<'a> {
 }
 
 /// The keywords that end a continued line.
-const KEYWORDS: &str = "v vt vn vp f fo l p g o s usemtl mtllib newmtl Ka Kd Ks Ke Kt Ns Ni d Tr Tf \
-    illum sharpness bsdf Pr Pm Ps Pc Pcr aniso anisor map_Ka map_Kd map_Ks map_Ke map_Ns map_d \
+const KEYWORDS: &str = "v vt vn vp f fo l p g o s usemtl mtllib newmtl Ka Kd Ks Ke Kt Ns Ni d Tr \
+    Tf illum sharpness bsdf Pr Pm Ps Pc Pcr aniso anisor map_Ka map_Kd map_Ks map_Ke map_Ns map_d \
     map_Bump map_bump map_norm map_Kn bump norm disp decal refl";
 
 /// Returns whether a control character counts as a blank.

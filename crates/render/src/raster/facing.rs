@@ -1,8 +1,8 @@
 //! Finds the colour of polygon outlines.
 //!
 //! The colour depends on the side that the observer sees, given by the sign of the area on the
-//! screen. If all polygons are triangles, and all back faces are treated alike, sixteen are computed
-//! at a time in draw order; other polygons are computed one by one.
+//! screen. If all polygons are triangles, and all back faces are treated alike, sixteen are
+//! computed at a time in draw order; other polygons are computed one by one.
 
 use crate::accel::Accelerated as _;
 use std::sync::atomic::{AtomicU8, Ordering};
