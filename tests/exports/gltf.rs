@@ -215,7 +215,7 @@ fn faces_without_texture_coordinates_show_no_texture_next_to_faces_that_have_the
     let folder = tempfile::tempdir().unwrap();
     put_picture(folder.path(), "t.png", 2, |_, _| [1, 2, 3, 100]);
     let mtl = "newmtl m\nKd .5 .25 1\nKs 0 0 0\nmap_Kd t.png\nmap_d t.png\nnewmtl plain\n";
-    // A mapped square, one that is not, one of which one triangle is; and both without a texture.
+    // A mapped square, an unmapped one, one with one mapped triangle; and both without a texture.
     let faces = "usemtl m\nf 1/1 2/2 3/3 4/4\nf 1 2 3 4\nf 1/1 2/2 3/3 4\n\
                  usemtl plain\nf 1/1 2/2 3/3\nf 1 3 4\n";
     put(folder.path(), &[("a.obj", &format!("{SQUARE}{faces}")), ("a.mtl", mtl)]);
