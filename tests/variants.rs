@@ -192,8 +192,8 @@ fn normals_transformed_by_the_objects_own_matrix_lean_by_79_degrees() {
     assert!((apart - 78.58).abs() < 1.0, "{apart}");
 }
 
-/// A two-sided sheet, seen from behind, of which a normal transformed like the surface says the
-/// opposite.
+/// A two-sided sheet is seen from behind, while its normal, transformed like the surface, points to
+/// the observer.
 #[test]
 fn normals_of_light_do_not_decide_which_side_is_seen() {
     let turn = DMat4::from_rotation_y(0.25 * std::f64::consts::PI);

@@ -156,18 +156,26 @@ impl State {
         if let Ok(command) = framing::models(&scene, view, from) {
             command.apply(&mut scene).map_err(Failure::value)?;
         }
-        if self.is_lit
-            && let Ok(command) = lighting::models(&scene, view)
-        {
-            command.apply(&mut scene).map_err(Failure::value)?;
-        }
+        self.light(&mut scene, view)?;
         Ok(scene)
+    }
+
+    /// Places automatic lights for a view.
+    fn light(&self, scene: &mut core::Scene, view: &View) -> Result<(), Failure> {
+        if self.is_lit
+            && let Ok(command) = lighting::models(scene, view)
+        {
+            command.apply(scene).map_err(Failure::value)?;
+        }
+        Ok(())
     }
 
     /// Returns the scene in its default view.
     fn presented(&mut self) -> Result<core::Scene, Failure> {
         if self.is_file {
-            return Ok(self.scene.clone());
+            let mut scene = self.scene.clone();
+            self.light(&mut scene, &self.view)?;
+            return Ok(scene);
         }
         if let Some(scene) = &self.presented {
             return Ok(scene.clone());

@@ -161,7 +161,7 @@ def test_the_camera_of_a_picture_draws_the_same_pixels(cam):
 
 
 def test_a_camera_looks_with_its_own_lens_whatever_the_scene_file_says(tmp_path):
-    cameras = [mz.Camera(yfov=0.8, pose=mz.Camera.look_at((40, 90, 300), (0, 0, 0)).pose())]
+    cameras = [mz.Camera(yfov=0.8, pose=mz.Camera.look_at((1, 2, 4), (0, 0, 0)).pose())]
     cameras += [mz.Camera.around(0.4, 0.3)]
 
     def pictures(view):
@@ -183,6 +183,24 @@ def test_a_camera_looks_with_its_own_lens_whatever_the_scene_file_says(tmp_path)
     for ours, expected in zip(pictures("observer: Object"), (posed, around), strict=True):
         assert np.array_equal(ours, expected)
     assert np.array_equal(pictures("projection: Orthographic")[0], posed)
+
+
+def test_automatic_lights_of_a_scene_file_are_those_of_models(tmp_path):
+    path = tmp_path / "a.marraztu"
+    path.write_text(
+        """(
+            version: 1,
+            objects: [(id: 1, name: "ball", model: Own("sphere"), material: Preset("pearl"))],
+            cameras: [(id: 2, name: "camera 1", eye: (0.0, 0.0, 4.0))],
+            view: (object: Some(1), camera: 2),
+        )"""
+    )
+    scene = mz.Scene.load(path)
+    scene.lights = None
+    kinds = {light.kind for light in scene.lights}
+    assert kinds == {"ambient", "sun", "spot"}, "the bulb of the first scene is far away"
+    color = scene.render(48, 48).color
+    assert 100 < color[24, 24].max() < 256 and (color[12:36, 12:36] == 255).mean() < 0.1
 
 
 @pytest.mark.parametrize("size", [(64, 48), (48, 64), (50, 50)])
