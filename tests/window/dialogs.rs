@@ -80,6 +80,16 @@ fn esc_leaves_at_once_while_nothing_is_unsaved() {
 }
 
 #[test]
+fn esc_closes_the_history_before_it_leaves() {
+    let mut editor = Editor::new();
+    editor.perform(Action::Panel(Panel::History));
+    assert!(!editor.leaves_by(Named(Key::Escape)));
+    assert!(!editor.state().panels.has(Panel::History));
+    assert!(!editor.leaves_by(Named(Key::Escape)), "it warns first");
+    assert!(editor.leaves_by(Named(Key::Escape)));
+}
+
+#[test]
 fn esc_asks_while_something_is_unsaved_and_cancel_keeps_everything() {
     for chord in [Named(Key::Escape), Command(Key::Q)] {
         let mut editor = Editor::new();

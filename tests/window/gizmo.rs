@@ -10,6 +10,7 @@ use glam::{DMat4, DVec3};
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::{Command, Lower, Named};
 use marraztu::app::actions::Request;
+use marraztu_core::edit::{Gesture, GesturePhase, items, placement};
 use marraztu_core::scene::{Frame, ItemId, LightKind, Subject};
 
 use crate::editor::Editor;
@@ -18,13 +19,13 @@ use crate::panels;
 const LEFT: PointerButton = PointerButton::Primary;
 const RIGHT: PointerButton = PointerButton::Secondary;
 
-fn placement(editor: &Editor) -> DMat4 {
+fn matrix(editor: &Editor) -> DMat4 {
     let id = editor.view().object.unwrap();
     *editor.scene().objects.get(id).unwrap().placement.now()
 }
 
 fn place(editor: &Editor) -> DVec3 {
-    placement(editor).w_axis.truncate()
+    matrix(editor).w_axis.truncate()
 }
 
 /// The window position of the selected ship's origin: (-100, 0, 0) seen from (0, 0, 400).
@@ -134,6 +135,35 @@ fn digits_typed_with_the_pointer_over_the_picture_are_one_step_that_esc_takes_ba
 }
 
 #[test]
+fn a_typed_amount_keeps_what_else_is_changed_meanwhile() {
+    let mut editor = with_ship();
+    let id = editor.view().object.unwrap();
+    let opacity = |editor: &Editor| editor.scene().objects.get(id).unwrap().opacity;
+    let change = |editor: &mut Editor, command| {
+        let (gesture, label) = (Gesture::Whole, "Change".to_owned());
+        editor.ask(Request::Change { command, gesture, label });
+    };
+    editor.perform(Action::TypeAmount);
+    type_letters(&mut editor, "1");
+    let half = items::change_object(&editor.scene(), id, |object| object.opacity = 0.5).unwrap();
+    change(&mut editor, half);
+    type_letters(&mut editor, "2");
+    assert_eq!((place(&editor).x, opacity(&editor)), (-88.0, 0.5));
+    // If the place itself is changed, the amount ends.
+    let (scene, view, to) = (editor.scene(), editor.view(), DVec3::new(7.0, 8.0, 9.0));
+    let first = GesturePhase::First;
+    let moved = placement::object_translation(&scene, &view, id, to, first).unwrap();
+    change(&mut editor, moved);
+    type_letters(&mut editor, "3");
+    assert_eq!(place(&editor), to);
+    editor.perform(Action::TypeAmount);
+    type_letters(&mut editor, "4");
+    editor.perform(Action::Undo);
+    type_letters(&mut editor, "5");
+    assert_eq!(place(&editor), to);
+}
+
+#[test]
 fn a_click_in_a_panel_ends_a_typed_amount_and_its_change_stays() {
     let mut editor = Editor::tall();
     editor.perform_all(&[Action::SubjectObject, Action::TypeAmount]);
@@ -204,7 +234,7 @@ fn rings_turn_and_squares_scale_in_the_frame_that_holds() {
     editor.perform(Action::Rotate);
     let at = middle(&editor) + vec2(0.0, -84.0 * 1.18);
     editor.drag(LEFT, &[at, at + vec2(30.0, 4.0), at + vec2(60.0, 30.0)]);
-    let turned = placement(&editor);
+    let turned = matrix(&editor);
     assert!(turned.x_axis.x < 0.999 && place(&editor) == DVec3::new(-100.0, 0.0, 0.0));
     editor.press(Command(Key::Z));
     // In the global frame objects turn about the world's origin, so the handles are there.
@@ -219,7 +249,7 @@ fn rings_turn_and_squares_scale_in_the_frame_that_holds() {
     editor.perform(Action::Scale);
     let at = middle(&editor) + vec2(60.0, 0.0);
     editor.drag(LEFT, &[at, at + vec2(15.0, 0.0), at + vec2(30.0, 0.0)]);
-    let m = placement(&editor);
+    let m = matrix(&editor);
     assert!(m.x_axis.x > 1.2 && m.y_axis.y == 1.0, "{m}");
 }
 

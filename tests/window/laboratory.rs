@@ -23,6 +23,7 @@ use marraztu_lab::suite::{SUITE, SuiteDetail};
 use marraztu_render::Renderer;
 use marraztu_render::plan_frame;
 
+use crate::dialogs::{CUBE, folder_with};
 use crate::editor::Editor;
 use crate::helpers::texts;
 use crate::panels::{click, control};
@@ -297,6 +298,36 @@ fn esc_leads_back_from_a_lesson_and_only_then_out_of_the_program() {
     assert!(editor.scene() == scene && !lab(&editor).away);
     assert!(!editor.leaves_by(Named(Key::Escape)), "it warns first");
     assert!(editor.leaves_by(Named(Key::Escape)));
+}
+
+#[test]
+fn a_model_that_is_opened_in_a_lesson_goes_to_the_users_scene() {
+    let (_folder, path) = folder_with("cube.obj", CUBE);
+    let has_cube =
+        |editor: &Editor| editor.scene().objects.iter().any(|(_, object)| object.name == "cube");
+    let lesson = Request::Lab(LabRequest::ShowLesson("depth"));
+    let mut editor = editor();
+    editor.perform_all(&[Action::SubjectObject, Action::StepXUp]);
+    let own = editor.scene().objects.len();
+    editor.ask(lesson.clone());
+    editor.ask(Request::LoadFiles(vec![path.clone()]));
+    assert!(!lab(&editor).away, "the way back comes first");
+    until(&mut editor, "the dialog", |editor| editor.shows("Material of cube.obj"));
+    editor.click_label("Load");
+    assert!(has_cube(&editor) && editor.scene().objects.len() == own + 1);
+    editor.perform(Action::Undo);
+    // A model that is still being read when a lesson opens waits for the way back.
+    let ctx = editor.harness.ctx.clone();
+    let app = editor.harness.state_mut();
+    app.answer(&ctx, Request::LoadFiles(vec![path]));
+    app.answer(&ctx, lesson);
+    for _ in 0..10 {
+        editor.settle();
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    assert!(lab(&editor).away && !editor.shows("Material of cube.obj"));
+    editor.ask(Request::Lab(LabRequest::Back));
+    until(&mut editor, "the dialog", |editor| editor.shows("Material of cube.obj"));
 }
 
 #[test]

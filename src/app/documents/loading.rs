@@ -15,19 +15,24 @@ pub(crate) struct Loading {
     pub(crate) task: Task<Fetched>,
     /// Whether it will open a dialog, for which other dialogs have to be closed first.
     pub(crate) asks: bool,
+    /// Whether it belongs to the scene of a lesson, not to the user's own.
+    pub(crate) of_lesson: bool,
 }
 
 /// A file waiting to be read.
 pub(crate) struct Queued {
     pub(crate) label: String,
     pub(crate) asks: bool,
+    pub(crate) of_lesson: bool,
     pub(crate) work: Box<dyn FnOnce(&io::Progress) -> Fetched + Send>,
 }
 
 impl std::fmt::Debug for Queued {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { label, asks, work: _ } = self;
-        f.debug_struct("Queued").field("label", label).field("asks", asks).finish_non_exhaustive()
+        let Self { label, asks, of_lesson, work: _ } = self;
+        let mut shown = f.debug_struct("Queued");
+        shown.field("label", label).field("asks", asks).field("of_lesson", of_lesson);
+        shown.finish_non_exhaustive()
     }
 }
 

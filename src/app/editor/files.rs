@@ -37,8 +37,10 @@ use marraztu_render::plan_frame;
 const MOST_LOADING: usize = 8;
 
 impl App {
-    /// Loads models as the key `f` does, or opens the scenes among the files.
+    /// Loads models as the key `f` does, or opens the scenes among the files. Models go to the user's
+    /// scene: the scene of a lesson ends with the lesson.
     pub(crate) fn load_files(&mut self, ctx: &Context, paths: Vec<PathBuf>) {
+        self.back_to_scene();
         for path in paths {
             if is_scene(&path) {
                 self.unless_unsaved(ctx, After::Open(Some(path)));
@@ -148,17 +150,18 @@ impl App {
         asks: bool,
         work: impl FnOnce(&io::Progress) -> Fetched + Send + 'static,
     ) {
-        self.queued.push_back(Queued { label, asks, work: Box::new(work) });
+        let of_lesson = self.state.lab.away;
+        self.queued.push_back(Queued { label, asks, of_lesson, work: Box::new(work) });
         self.begin_queued(ctx);
     }
 
     /// Starts to read queued files, up to the maximum.
     fn begin_queued(&mut self, ctx: &Context) {
         while self.loading.len() < MOST_LOADING
-            && let Some(Queued { label, asks, work }) = self.queued.pop_front()
+            && let Some(Queued { label, asks, of_lesson, work }) = self.queued.pop_front()
         {
             match Task::start(ctx, label, work) {
-                Ok(task) => self.loading.push(Loading { task, asks }),
+                Ok(task) => self.loading.push(Loading { task, asks, of_lesson }),
                 Err(error) => {
                     self.dialogs.tell_fault(format!("Cannot start a thread to load: {error}."));
                 }
@@ -168,8 +171,11 @@ impl App {
 
     /// Handles the files that were read.
     pub(crate) fn hear_loading(&mut self, ctx: &Context) {
-        // Files are handled in the order of the requests, whatever order they finish in.
-        while let Some(loading) = self.loading.first() {
+        // Files are handled in the order of the requests, whatever order they finish in. Those for
+        // the user's scene wait until a lesson ends.
+        let away = self.state.lab.away;
+        while let Some(at) = self.loading.iter().position(|file| file.of_lesson || !away) {
+            let loading = &self.loading[at];
             // Only one material dialog is open at a time, so further models wait.
             if loading.asks && self.dialogs.material().is_some() {
                 return;
@@ -180,10 +186,12 @@ impl App {
                 Outcome::Lost => None,
             };
             // A place is free again for a queued file.
-            let Loading { task, .. } = self.loading.remove(0);
+            let Loading { task, of_lesson, .. } = self.loading.remove(at);
             self.begin_queued(ctx);
             ctx.request_repaint();
             match fetched {
+                // The lesson has ended, and its items with it.
+                Some(_) if of_lesson && !away => {}
                 Some(fetched) => self.take_fetched(ctx, fetched),
                 None => self.dialogs.tell_fault(format!(
                     "{} failed because of a bug in the program; nothing has changed.",

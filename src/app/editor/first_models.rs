@@ -55,6 +55,7 @@ impl App {
 
     /// Opens files. If the first scene is untouched, models replace it.
     pub(crate) fn open_files(&mut self, ctx: &Context, paths: Vec<PathBuf>) {
+        self.back_to_scene();
         if self.is_untouched() && !paths.iter().any(|path| is_scene(path)) {
             self.load_alone(ctx, paths, Arrival::Dropped);
         } else {

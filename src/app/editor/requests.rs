@@ -77,6 +77,10 @@ impl App {
             self.state.several = Others::default();
             return true;
         }
+        // Files keep this window open, so it closes after the modes.
+        if self.closes(Panel::History) {
+            return true;
+        }
         if self.state.lab.away {
             self.back_to_scene();
             return true;
@@ -90,7 +94,9 @@ impl App {
 
     /// Describes the next Esc's effect, with all dialogs closed.
     pub(super) fn next_escape(&self) -> &'static str {
-        if self.state.lab.away {
+        if self.state.panels.has(Panel::History) {
+            "Press Esc again to close the history"
+        } else if self.state.lab.away {
             "Press Esc again to go back to your scene"
         } else if self.state.lab.running.is_some() {
             "Press Esc again to cancel measuring"

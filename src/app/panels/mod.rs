@@ -163,7 +163,7 @@ macro_rules! table {
 each_panel!(table);
 
 impl Panel {
-    /// The panels that Esc closes. Files and preferences do not keep them open.
+    /// The panels that Esc closes first. Files and preferences do not keep them open.
     pub const MOMENTARY: [Self; 3] = [Self::CheatSheet, Self::Preferences, Self::About];
 }
 
@@ -201,7 +201,7 @@ impl OpenPanels {
         self.with(panel, !self.has(panel))
     }
 
-    /// Returns these panels without the ones that Esc closes, and without the laboratory, which
+    /// Returns these panels without the momentary ones, and without the laboratory, which
     /// would take half of the next start.
     #[must_use]
     pub const fn lasting(self) -> Self {

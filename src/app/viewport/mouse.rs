@@ -171,7 +171,7 @@ impl Mouse {
                 _ => {}
             }
         }
-        self.pull(ui, under, requests);
+        self.pull(ui, &state.scene, under, requests);
         self.go_on(ui, state, under.size, requests);
         if self.drag.is_some_and(|drag| !ui.input(|input| input.pointer.button_down(drag.button))) {
             // It was released outside the window.
@@ -282,7 +282,7 @@ impl Mouse {
         }
         // The movement up to the release belongs to the drag.
         self.go_on(ui, state, under.size, requests);
-        self.pull(ui, under, requests);
+        self.pull(ui, &state.scene, under, requests);
         let typed = self.grab.take().is_some_and(|grab| grab.is_typed());
         let Some(drag) = self.drag.take() else { return };
         if drag.motion == Motion::Box && drag.moved && !drag.over {

@@ -19,6 +19,7 @@ pub mod motion;
 mod names;
 pub mod navigation;
 pub mod placement;
+pub mod places;
 pub mod presenting;
 mod refusal;
 mod selected;

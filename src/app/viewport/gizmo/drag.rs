@@ -1,8 +1,8 @@
 //! Drags of a handle: converts positions of the pointer, or typed numbers, into amounts.
 //!
-//! Every amount is relative to the scene at the start of the drag and to the place of the press.
-//! Nothing is accumulated from frame to frame, so nothing drifts, and moving back restores the
-//! start.
+//! Every amount is relative to the places of the items at the start of the drag and to the place of
+//! the press. Nothing is accumulated from frame to frame, so nothing drifts, and moving back
+//! restores the start.
 
 use egui::{Pos2, Rect, Vec2};
 use glam::DVec3;
@@ -16,6 +16,7 @@ use crate::app::widgets::{expression, number::short};
 use marraztu_core::base::image::Size;
 use marraztu_core::base::math::{self, Axis};
 use marraztu_core::edit::gizmo::{self, Amount};
+use marraztu_core::edit::places::ItemPlaces;
 use marraztu_core::edit::{Gesture, GesturePhase, several};
 use marraztu_core::scene::{ItemId, Scene, Transformation, View};
 
@@ -31,10 +32,14 @@ pub(crate) struct Grab {
     gizmo: Gizmo,
     handle: Handle,
     from: Pos2,
-    /// The scene and the view at the start.
-    scene: Scene,
+    /// The view at the start.
     view: View,
-    others: Vec<ItemId>,
+    /// The selected items; the keys act on the first.
+    items: Vec<ItemId>,
+    /// The places of the items at the start.
+    start: ItemPlaces,
+    /// The places of the items after the last change that was made, and after the last request.
+    known: [ItemPlaces; 2],
     name: String,
     /// The last angle, and the sum of all changes over several turns.
     angle: f64,
@@ -57,13 +62,16 @@ pub(crate) struct Pull<'a> {
 impl Grab {
     /// Grabs a handle at a place of the window.
     pub(crate) fn new(state: &State, gizmo: &Gizmo, handle: Handle, from: Pos2) -> Self {
+        let items: Vec<ItemId> = state.selected().into_iter().chain(state.others()).collect();
+        let start = ItemPlaces::of(&state.scene, &items);
         let mut grab = Self {
             gizmo: gizmo.clone(),
             handle,
             from,
-            scene: state.scene.clone(),
             view: state.view.clone(),
-            others: state.others(),
+            items,
+            known: [start.clone(), start.clone()],
+            start,
             name: state.acted_on_name(),
             angle: 0.0,
             turned: 0.0,
@@ -99,26 +107,40 @@ impl Grab {
     }
 
     /// Follows the pointer and the keyboard. Adds the change and returns whether Enter ended the
-    /// drag.
+    /// drag, or another change of the places did: the amount no longer counts from the start then.
     pub(crate) fn follow(
         &mut self,
+        scene: &Scene,
         pull: Pull<'_>,
         gesture: Gesture,
         requests: &mut Requests,
     ) -> bool {
+        if self.is_moved_by_others(scene) {
+            return true;
+        }
+        // Everything but the places is as it is now, such as a model that was reloaded.
+        let scene = &self.start.given_to(scene);
         let ended = self.typed.take(pull.typed);
         let amount = if self.is_typed() {
             let number = expression::value(&self.typed.text);
             number.and_then(|number| self.of_number(number))
         } else {
             let amount = self.of_pointer(pull.to);
-            let snap = |amount| gizmo::snapped(&self.scene, &self.view, amount);
+            let snap = |amount| gizmo::snapped(scene, &self.view, amount);
             if pull.snap { amount.map(snap) } else { amount }
         };
         self.say(amount);
         if let Some(amount) = amount.filter(|amount| self.asked != Some(*amount)) {
             self.asked = Some(amount);
-            requests.push(self.request(amount, gesture));
+            let others = self.items.get(1..).unwrap_or_default();
+            let command = several::each(scene, &self.view, others, |scene, view| {
+                gizmo::transform(scene, view, amount, GesturePhase::First)
+            });
+            let mut after = scene.clone();
+            if command.clone().is_ok_and(|command| command.apply(&mut after).is_ok()) {
+                self.known[1] = ItemPlaces::of(&after, &self.items);
+            }
+            requests.push(Request::change(self.label(amount), gesture, command));
         }
         ended
     }
@@ -126,6 +148,7 @@ impl Grab {
     /// Follows the keyboard without the mouse: nothing happens before a number is typed.
     pub(crate) fn follow_typed(
         &mut self,
+        scene: &Scene,
         pull: Pull<'_>,
         gesture: Gesture,
         requests: &mut Requests,
@@ -133,16 +156,23 @@ impl Grab {
         if pull.typed == "\n" && !self.is_typed() {
             return true;
         }
+        if self.is_moved_by_others(scene) {
+            return true;
+        }
         let empty = pull.typed.is_empty() && !self.is_typed();
-        !empty && self.follow(pull, gesture, requests)
+        !empty && self.follow(scene, pull, gesture, requests)
     }
 
-    fn request(&self, amount: Amount, gesture: Gesture) -> Request {
-        let Self { scene, view, others, .. } = self;
-        let command = several::each(scene, view, others, |scene, view| {
-            gizmo::transform(scene, view, amount, GesturePhase::First)
-        });
-        Request::change(self.label(amount), gesture, command)
+    /// Returns whether the items are at other places than those of this drag. A frame may ask for
+    /// several changes before the first one is made.
+    fn is_moved_by_others(&mut self, scene: &Scene) -> bool {
+        let places = ItemPlaces::of(scene, &self.items);
+        let [made, asked] = &mut self.known;
+        if places == *asked {
+            *made = places;
+            return false;
+        }
+        places != *made
     }
 
     /// Describes the amount for the history: "Move teapot 12 along x".

@@ -7,6 +7,7 @@ use crate::app::actions::{Request, Requests};
 use crate::app::viewport::gizmo::{Grab, Pull};
 use crate::app::widgets::gestures;
 use marraztu_core::edit::Gesture;
+use marraztu_core::scene::Scene;
 
 impl Mouse {
     /// Returns the handle being dragged, once the press is more than a click.
@@ -34,13 +35,19 @@ impl Mouse {
     }
 
     /// Lets the held handle follow the pointer and the typed text.
-    pub(super) fn pull(&mut self, ui: &Ui, under: Under<'_>, requests: &mut Requests) {
+    pub(super) fn pull(
+        &mut self,
+        ui: &Ui,
+        scene: &Scene,
+        under: Under<'_>,
+        requests: &mut Requests,
+    ) {
         let typed_gesture = self.typed_gesture();
         let Some(grab) = &mut self.grab else { return };
         let snap = ui.input(|input| input.modifiers.command);
         let Some(drag) = &mut self.drag else {
             let pull = Pull { to: under.rect.center(), snap: false, typed: under.typed };
-            if grab.follow_typed(pull, typed_gesture, requests) {
+            if grab.follow_typed(scene, pull, typed_gesture, requests) {
                 self.grab = None;
             }
             return;
@@ -50,8 +57,8 @@ impl Mouse {
             return;
         }
         let pull = Pull { to: drag.to, snap, typed: under.typed };
-        if grab.follow(pull, drag.gesture, requests) {
-            // Enter ends the drag, and the release of the button has no further effect.
+        if grab.follow(scene, pull, drag.gesture, requests) {
+            // The drag has ended, and the release of the button has no further effect.
             (drag.over, self.grab) = (true, None);
         }
     }

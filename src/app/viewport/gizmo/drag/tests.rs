@@ -52,8 +52,8 @@ fn drag(state: &mut State, handle: Handle, by: Vec2, typed: &str) -> Option<Amou
     let mut requests = Vec::new();
     // The drag takes a detour, which must not matter.
     let pull = |to, typed| Pull { to, snap: false, typed };
-    grab.follow(pull(from + vec2(7.0, 31.0), ""), Gesture::Part(1), &mut requests);
-    grab.follow(pull(from + by, typed), Gesture::Part(1), &mut requests);
+    grab.follow(&state.scene, pull(from + vec2(7.0, 31.0), ""), Gesture::Part(1), &mut requests);
+    grab.follow(&state.scene, pull(from + by, typed), Gesture::Part(1), &mut requests);
     let Some(Request::Change { command, .. }) = requests.pop() else { return None };
     command.apply(&mut state.scene).unwrap();
     grab.asked
