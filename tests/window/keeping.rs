@@ -109,6 +109,60 @@ fn work_of_a_program_that_ended_is_offered_and_recovered_as_unsaved() {
     editor.harness.state().wait_for_journal();
 }
 
+/// Leaves one step of work behind in this folder.
+fn leave_work(folder: &Path) {
+    let mut editor = Editor::keeping(folder);
+    editor.press(Lower(Key::Z));
+    editor.harness.state().wait_for_journal();
+}
+
+/// Makes these requests in one frame, and lets the files be read.
+fn ask_at_once(editor: &mut Editor, requests: impl IntoIterator<Item = Request>) {
+    let ctx = editor.harness.ctx.clone();
+    for request in requests {
+        editor.harness.state_mut().answer(&ctx, request);
+    }
+    for _ in 0..20 {
+        editor.settle();
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
+#[test]
+fn work_that_is_read_twice_or_discarded_while_it_is_read_is_not_lost() {
+    let folder = tempfile::tempdir().unwrap();
+    leave_work(folder.path());
+    let mut editor = Editor::keeping(folder.path());
+    ask_at_once(&mut editor, [Request::Recover(0), Request::Recover(0)]);
+    assert!(!editor.state().history.is_saved() && editor.steps_of_camera() == 1);
+    assert_eq!((editor.state().path.as_deref(), &editor.state().recent[..]), (None, &[][..]));
+    assert!(!editor.shows("Something went wrong"));
+    editor.harness.state().wait_for_journal();
+    drop(editor);
+    let mut editor = Editor::keeping(folder.path());
+    assert_eq!(editor.is_offered(), 1, "it is in the journal");
+    ask_at_once(&mut editor, [Request::Recover(0), Request::DiscardWork(0)]);
+    assert!(editor.state().history.is_saved() && editor.steps_of_camera() == 0);
+    assert_eq!((editor.is_offered(), editor.state().discarded.len()), (0, 1));
+}
+
+#[test]
+fn recovered_work_is_not_replaced_without_a_question_by_a_scene_that_is_read_meanwhile() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("my.marraztu");
+    let mut editor = Editor::keeping(folder.path());
+    editor.press(Command(Key::S));
+    editor.type_path(&file);
+    editor.wait_until(|_| file.is_file());
+    drop(editor);
+    leave_work(folder.path());
+    let mut editor = Editor::keeping(folder.path());
+    ask_at_once(&mut editor, [Request::Recover(0), Request::LoadFiles(vec![file.clone()])]);
+    assert!(editor.shows("Save the scene?") && editor.steps_of_camera() == 1);
+    editor.click_label("Discard");
+    editor.wait_until(|editor| editor.state().path.as_deref() == Some(&*file));
+}
+
 #[test]
 fn all_discarded_work_is_listed_and_without_any_the_entry_says_so() {
     let folder = tempfile::tempdir().unwrap();

@@ -30,6 +30,8 @@ pub(crate) struct Keeping {
     kept: Option<Scene>,
     /// Work that other programs have left behind, in the order of [`State::recoverable`].
     offered: Vec<Abandoned>,
+    /// The files of work that is not offered any more, because it was recovered or discarded.
+    settled: Vec<PathBuf>,
     /// Discarded work, in the order of [`State::discarded`].
     discarded: Vec<Discarded>,
     /// The preferences as last written.
@@ -75,6 +77,7 @@ impl App {
             journal,
             kept: None,
             offered,
+            settled: Vec::new(),
             discarded: Vec::new(),
             known: preferences.recent.clone(),
             preferences,
@@ -203,7 +206,15 @@ impl App {
             return None;
         }
         self.state.recoverable.remove(at);
-        Some(keeping.offered.remove(at))
+        let work = keeping.offered.remove(at);
+        keeping.settled.push(work.path().to_owned());
+        Some(work)
+    }
+
+    /// Returns whether a file belonged to work that was recovered or discarded, perhaps while it
+    /// was being read.
+    pub(crate) fn is_settled(&self, path: &Path) -> bool {
+        self.keeping.as_ref().is_some_and(|keeping| keeping.settled.iter().any(|it| it == path))
     }
 
     /// Marks the opened scene as unsaved if it is offered or discarded work, and assigns it to the
@@ -238,6 +249,8 @@ impl App {
         let name = scene_name(file.as_deref());
         (self.state.path, self.state.content) = (file, content);
         self.state.history.mark_unsaved();
+        // Scenes that are being read must not replace the work without a question.
+        self.changes += 1;
         self.state.tell(Some(format!("Recovered unsaved changes to {name}")));
         // The user does not know the name of the journal's file.
         let own_name = file_name(opened);

@@ -101,6 +101,9 @@ impl App {
 
     pub(crate) fn take_scene(&mut self, ctx: &Context, opening: Opening) {
         let Opening { path, changes, result } = opening;
+        if self.is_settled(&path) {
+            return;
+        }
         match result {
             // The user has gone on working while the scene was read, and has not been asked.
             Ok(_) if changes != self.changes && !self.is_all_saved() => {
