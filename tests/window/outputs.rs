@@ -6,7 +6,7 @@
 use std::path::PathBuf;
 
 use egui::accesskit::Role;
-use egui::{Key, Modifiers};
+use egui::{Key, Modifiers, ViewportCommand, ViewportId};
 use egui_kittest::kittest::NodeT as _;
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::Shifted;
@@ -16,6 +16,7 @@ use marraztu_io as io;
 use marraztu_render::{Renderer, plan_frame, without_ground};
 
 use crate::editor::Editor;
+use crate::helpers::texts;
 use crate::panels::{click, control};
 
 fn says(editor: &Editor, text: &str) -> bool {
@@ -39,6 +40,25 @@ fn a_picture_has_the_size_the_samples_and_the_ground_that_were_chosen() {
     let shot = Shot::new(&editor.scene(), &editor.view(), &settings, size);
     let expected = without_ground(&mut Renderer::default(), &shot);
     assert!(io::load_picture(&path).unwrap() == expected);
+}
+
+#[test]
+fn a_picture_with_overlays_is_of_a_frame_without_the_dialog() {
+    let mut editor = Editor::of_size(900.0, 500.0);
+    editor.press(Shifted(Key::F12));
+    click(&mut editor, Role::CheckBox, "Overlays");
+    control(&editor, Role::Button, "Save").click_accesskit();
+    // The software shell captures the frame that requests the picture, before the next one.
+    for _ in 0..10 {
+        editor.harness.step();
+        let output = &editor.harness.output().viewport_output[&ViewportId::ROOT];
+        let is_request = |command: &_| matches!(command, ViewportCommand::Screenshot(_));
+        if output.commands.iter().any(is_request) {
+            assert!(!texts(&editor).iter().any(|text| text == "Save picture"));
+            return;
+        }
+    }
+    panic!("no picture was requested");
 }
 
 #[test]

@@ -74,7 +74,10 @@ impl Making {
 #[derive(Debug)]
 struct Screenshot {
     path: PathBuf,
-    /// Whether the picture was requested: not before all dialogs over the picture are closed.
+    /// Whether no dialog was open at the end of the last frame: such a frame may still show the
+    /// dialog that it has closed.
+    clear: bool,
+    /// Whether the picture was requested: only in a frame that shows no dialog.
     asked: bool,
     image: Arc<Mutex<Option<Arc<ColorImage>>>>,
 }
@@ -119,7 +122,7 @@ impl App {
         // Overlays exist only in the window, so a picture of the window is saved.
         if choices.overlays {
             let image = Arc::default();
-            self.making.screenshot = Some(Screenshot { path, asked: false, image });
+            self.making.screenshot = Some(Screenshot { path, clear: false, asked: false, image });
             ctx.request_repaint();
             return;
         }
@@ -188,8 +191,13 @@ impl App {
     fn hear_screenshot(&mut self, ctx: &Context) {
         let Some(screenshot) = &mut self.making.screenshot else { return };
         if !screenshot.asked {
-            if self.dialogs.is_open() {
+            let is_clear = !self.dialogs.is_open();
+            let was_clear = std::mem::replace(&mut screenshot.clear, is_clear);
+            if !is_clear {
                 return;
+            }
+            if !was_clear {
+                return ctx.request_repaint();
             }
             screenshot.asked = true;
             let image = Arc::clone(&screenshot.image);
