@@ -171,11 +171,8 @@ impl App {
 
     /// Handles the files that were read.
     pub(crate) fn hear_loading(&mut self, ctx: &Context) {
-        // Files are handled in the order of the requests, whatever order they finish in. Those for
-        // the user's scene wait until a lesson ends.
-        let away = self.state.lab.away;
-        while let Some(at) = self.loading.iter().position(|file| file.of_lesson || !away) {
-            let loading = &self.loading[at];
+        // Files are handled in the order of the requests, whatever order they finish in.
+        while let Some(loading) = self.loading.first() {
             // Only one material dialog is open at a time, so further models wait.
             if loading.asks && self.dialogs.material().is_some() {
                 return;
@@ -186,12 +183,16 @@ impl App {
                 Outcome::Lost => None,
             };
             // A place is free again for a queued file.
-            let Loading { task, of_lesson, .. } = self.loading.remove(at);
+            let Loading { task, of_lesson, .. } = self.loading.remove(0);
             self.begin_queued(ctx);
             ctx.request_repaint();
+            // A lesson may have been opened while a file for the user's scene was read.
+            if !of_lesson {
+                self.back_to_scene();
+            }
             match fetched {
                 // The lesson has ended, and its items with it.
-                Some(_) if of_lesson && !away => {}
+                Some(_) if of_lesson && !self.state.lab.away => {}
                 Some(fetched) => self.take_fetched(ctx, fetched),
                 None => self.dialogs.tell_fault(format!(
                     "{} failed because of a bug in the program; nothing has changed.",

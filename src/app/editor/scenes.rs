@@ -109,11 +109,7 @@ impl App {
             Ok(_) if changes != self.changes && !self.is_all_saved() => {
                 self.unless_unsaved(ctx, After::Open(Some(path)));
             }
-            Ok(opened) => {
-                // A lesson may have been opened while the scene was read.
-                self.back_to_scene();
-                self.show_scene(ctx, &path, opened);
-            }
+            Ok(opened) => self.show_scene(ctx, &path, opened),
             Err(SceneFileError::Model(LoadError::Cancelled)) => {
                 self.state.tell(Some("Opening was cancelled".to_owned()));
             }
