@@ -301,10 +301,16 @@ impl App {
         self.state.lab.running = None;
     }
 
-    /// Cancels all measurements of a scene that is gone.
+    /// Cancels all measurements of a scene that is replaced, perhaps only for a lesson.
     pub(crate) fn end_measuring(&mut self) {
         self.lab.cancel();
+        let State { lab, plan, .. } = &mut self.state;
+        if self.lab.sweep.is_some() {
+            lab.is_rough = lab.report.is_some();
+        }
+        (lab.running, plan.measuring) = (None, false);
         (self.lab.sweep, self.lab.suite, self.lab.blame) = (None, None, None);
+        self.measuring = None;
     }
 
     /// Attributes the error at a pixel of the current picture.
