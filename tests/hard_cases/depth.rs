@@ -368,6 +368,10 @@ fn case_35_in_parallel_projection_depth_is_as_fine_far_off_as_near_by() {
         let fixed = |z: f64| (z / 2000.0 * 65535.0).round() as i64;
         naive += 64 * usize::from(fixed(z) == fixed(z + 1e-2));
     }
+    // Small things near the camera, while the far plane stays at 2000.
+    for z in [1.0, 0.1, 1e-2, 1e-3] {
+        wrong += hidden_ones(z, 1e-5 * z, Projection::Orthographic);
+    }
     Figure {
         case: 35,
         what: "wrong pixels of 200 pairs 0.01 apart in parallel projection",

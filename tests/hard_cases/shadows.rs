@@ -445,6 +445,43 @@ fn case_75_shadows_of_a_scene_2_to_the_k_times_as_large_are_the_same() {
     .hold();
 }
 
+/// Counts the pixels in shadow on sheets that have nothing above them, in many placements: faces
+/// that exporters wrote twice, once for each side, and a small sheet in the plane of a large one.
+fn double_faces_and_decals() -> usize {
+    let turns = (0..24_u32).map(|i| {
+        let turn = DMat4::from_rotation_z(0.37 * f64::from(i)) * tilted(5.0 + 3.0 * f64::from(i));
+        let away = DVec3::new(f64::from(i % 5), f64::from(i % 3), f64::from(i % 7));
+        DMat4::from_translation(7.3 * away) * turn
+    });
+    turns
+        .flat_map(|turn| {
+            // Turned by the placement, or in a file with six decimals.
+            let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+            let filed = corners.map(|[x, y]| {
+                let corner = (turn * floor().1).transform_point3(DVec3::new(x, y, 0.0));
+                corner.to_array().map(|x| ((x * 1e6).round() / 1e6) as f32)
+            });
+            let flat = corners.map(|[x, y]| [x as f32, y as f32, 0.0]);
+            let double = |name, corners: [[f32; 3]; 4]| {
+                model(name, &corners, &[&[0, 1, 2, 3], &[3, 2, 1, 0]])
+            };
+            let small = DMat4::from_scale(DVec3::splat(0.3)) * DMat4::from_rotation_z(0.5);
+            let placed = turn * floor().1;
+            [
+                vec![(double("placed", flat), placed)],
+                vec![(double("filed", filed), DMat4::IDENTITY)],
+                vec![(square(), placed), (square(), placed * small)],
+            ]
+            .map(|models| Shade {
+                models,
+                light: sun(turn.transform_vector3(DVec3::new(0.3, 1.0, 0.2))),
+                eye: DVec3::Z * 400.0,
+            })
+        })
+        .map(|stage| stage.draw().shaded.iter().filter(|shaded| **shaded).count())
+        .sum()
+}
+
 #[test]
 fn case_76_coplanar_triangles_do_not_shade_each_other() {
     // Thin strips, rotated so that their corners share no grid.
@@ -468,6 +505,7 @@ fn case_76_coplanar_triangles_do_not_shade_each_other() {
         shaded += stage.draw().shaded.iter().filter(|s| **s).count();
         naive += stage.judge(&in_single).naive_wrong;
     }
+    shaded += double_faces_and_decals();
     Figure {
         case: 76,
         what: "pixels of a plane that the plane itself shades",

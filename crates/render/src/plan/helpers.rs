@@ -13,7 +13,7 @@ use marraztu_core::scene::{Camera, Mesh, MeshSource, Model, SourceCorner};
 pub(super) const YELLOW: Color = Color([255, 255, 0]);
 
 /// The size of a camera model: its longest side, in world units.
-const CAMERA_MARK: f64 = 24.0;
+pub(super) const CAMERA_MARK: f64 = 24.0;
 
 /// Half of a diamond's diagonal in world units.
 const DIAMOND: f64 = 1.0;

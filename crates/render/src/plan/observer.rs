@@ -2,6 +2,7 @@
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
+use super::helpers::CAMERA_MARK;
 use crate::frame::Viewport;
 use crate::lights::region::Region;
 use crate::screen::clip::Screen;
@@ -22,6 +23,51 @@ fn unit(lens: &Lens, projection: Projection) -> f64 {
         }
     };
     FAR / math::power_of_two_near(far.clamp(1e-120, 1e120))
+}
+
+/// The planes of an orthographic lens are at most this many times, up to a power of two, as far
+/// away as what is drawn.
+const SLACK: f64 = 16.0;
+
+/// Returns the lens of the camera, in orthographic projection with planes that are not much farther
+/// away than what is drawn.
+///
+/// Orthographic depth is linear: between planes for large scenes, a small model would share a few
+/// depths. In perspective, the reversed depth does not depend on the far plane.
+fn drawn_lens(shot: &Shot, world_from_view: DMat4) -> Lens {
+    let Shot { scene, view, .. } = shot;
+    let lens = scene.selected_camera(view).lens;
+    if view.projection == Projection::Perspective {
+        return lens;
+    }
+    let [towards, eye] = [world_from_view.z_axis, world_from_view.w_axis].map(DVec4::truncate);
+    // The depth of a point, and its change along a vector.
+    let depth = |p: DVec3| (p - eye).dot(towards).abs();
+    let along = |v: DVec4| v.truncate().dot(towards).abs();
+    let objects = scene.objects.iter().filter(|(_, object)| object.visible);
+    let objects = objects.filter_map(|(_, object)| {
+        let bounds = object.model.mesh.bounds()?;
+        let m = object.world_from_mesh(view.time);
+        let half = bounds.extent() * 0.5;
+        let own = along(m.x_axis) * half.x + along(m.y_axis) * half.y + along(m.z_axis) * half.z;
+        Some(depth(m.transform_point3(bounds.centre())) + own)
+    });
+    // Bulbs are flat marks that face the observer.
+    let lights = scene.lights.iter().filter(|(_, light)| light.on);
+    let bulbs = lights.filter_map(|(_, light)| scene.light_origin(view, &light.kind)?.position);
+    let others = scene.cameras.iter().filter(|(id, _)| *id != view.camera);
+    let cameras = others.map(|(_, camera)| depth(camera.pose.now().eye) + CAMERA_MARK);
+    let marks = bulbs.map(depth).chain(cameras).filter(|_| view.marks);
+    let farthest = objects.chain(marks).filter(|depth| depth.is_finite()).fold(0.0, f64::max);
+    if farthest == 0.0 {
+        return lens;
+    }
+    // A power of two rarely changes while things move.
+    let most = 2.0 * SLACK * math::power_of_two_near(farthest);
+    let Lens { parallel_near: near, parallel_far: far, .. } = lens;
+    let [parallel_near, parallel_far] = [near.max(-most), far.min(most)];
+    // Planes that exclude everything stay.
+    if parallel_near < parallel_far { Lens { parallel_near, parallel_far, ..lens } } else { lens }
 }
 
 /// Returns the size of the picture that is drawn, before it is enlarged.
@@ -59,7 +105,7 @@ impl ObserverSpace {
         // The axes are orthonormal, so the inverse of the rotation is its transpose.
         let turn = DMat3::from_mat4(world_from_view).transpose();
         let eye = world_from_view.w_axis.truncate();
-        let lens = scene.selected_camera(view).lens;
+        let lens = drawn_lens(shot, world_from_view);
         let unit = unit(&lens, view.projection);
         let turned = math::placed(turn, DVec3::ZERO) * DMat4::from_translation(-eye);
         // Lengths are converted to units of view space; the angle stays.

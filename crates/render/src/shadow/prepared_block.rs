@@ -76,14 +76,15 @@ fn placed<S: Simd>(simd: S, world_from_object: &DMat4, corner: &[[f32; BVH_BLOCK
 
 impl PreparedBlock {
     /// Prepares the triangles of a block for the points in a box. `reach` is the largest coordinate
-    /// of the points' own triangles. Returns a bit mask of the triangles that may block a point.
+    /// of the points' own triangles; within `flat` of a plane, exact arithmetic decides. Returns a
+    /// bit mask of the triangles that may block a point.
     #[inline(always)]
     pub(super) fn set<S: Simd>(
         &mut self,
         simd: S,
         (block, world_from_object): (&BvhBlock, &DMat4),
         (around, light): (&Around, DVec3),
-        reach: f64,
+        (reach, flat): (f64, f64),
     ) -> u64 {
         let [a, b, c] = [
             placed(simd, world_from_object, &block.corners[0]),
@@ -116,7 +117,8 @@ impl PreparedBlock {
             largest(from_a) * largest(ab) * ERROR * far[0],
             largest(from_b) * largest(bc) * ERROR * far[1],
             largest(from_c) * largest(ca) * ERROR * far[2],
-            size * (far[0] * ERROR + 6.0 * OFF_PLANE * reach),
+            // The length of the plane's normal is at most three times `size`.
+            size * (far[0] * ERROR + (6.0 * OFF_PLANE * reach + 3.0 * flat)),
         ];
         // The largest value of each function over the box; see the module for the formula.
         let halves =

@@ -11,7 +11,7 @@ use super::patches::Patch;
 use super::prepared_block::PreparedBlock;
 use super::rays::{Origins, RayCount, RayScratch};
 use super::shaft::Around;
-use super::triangle::{Corners, Prepared, is_between, reaches_behind};
+use super::triangle::{Corners, FLAT, Prepared, is_between, reaches_behind};
 use crate::accel::{BVH_BLOCK, Bvh, BvhBlock, BvhChild, BvhNode};
 use crate::frame::FramePlan;
 use crate::frame::shadows::{Caster, Holes, ShadowSource, Shadows};
@@ -52,6 +52,8 @@ struct InPlace<'a> {
     /// The bounding box in world space.
     low: DVec3,
     high: DVec3,
+    /// The distance in world space within which its triangles lie in one plane.
+    flat: f64,
     is_solid: bool,
 }
 
@@ -204,7 +206,9 @@ impl<'a> Tracer<'a> {
                 is_set = true;
             }
             shaft.set(&placed.object_from_world, (&around, light), (local.far, local.pad));
-            let packet = Packet { light, around, is_own: origins.caster == Some(index) };
+            let own = origins.caster.map(|own| self.casters[own as usize].flat);
+            let flat = placed.flat.max(own.unwrap_or(0.0));
+            let packet = Packet { light, around, flat, is_own: origins.caster == Some(index) };
             stack.clear();
             stack.push((tree.root, points & mask));
             behind |= self.behind_tree(simd, (placed, tree), &packet, scratch, points & mask);
@@ -257,7 +261,8 @@ impl<'a> Tracer<'a> {
         let mut left = leaf.count as usize;
         for block in &tree.blocks[leaf.blocks()] {
             let own = (block, &placed.caster.world_from_object);
-            let possible = prepared.set(simd, own, (&packet.around, packet.light), origins.reach);
+            let error = (origins.reach, packet.flat);
+            let possible = prepared.set(simd, own, (&packet.around, packet.light), error);
             // The last block of a leaf repeats its last triangle; the repetitions are masked out.
             let possible = possible & ((1 << left.min(BVH_BLOCK)) - 1);
             if possible != 0 {
@@ -314,7 +319,7 @@ impl<'a> Tracer<'a> {
         let corners = &triangle.corners;
         // A point is on the light's side of a plane if its own triangle is, however it was rounded.
         let is_between = sure
-            || (self.own_reaches_behind(origins, ray, corners, packet.light)
+            || (self.own_reaches_behind((packet, origins), ray, corners)
                 && is_between(corners, packet.light, origins.point(ray)));
         if placed.is_solid || !is_between {
             return is_between;
@@ -326,15 +331,14 @@ impl<'a> Tracer<'a> {
     /// a triangle is exact, so the answer is yes.
     fn own_reaches_behind(
         &self,
-        origins: &Origins,
+        (packet, origins): (&Packet, &Origins),
         i: usize,
         triangle: &Corners,
-        light: DVec3,
     ) -> bool {
         let is_exact = !origins.in_triangle || origins.lifted >> i & 1 == 1;
         let Some(caster) = origins.caster.filter(|_| !is_exact) else { return true };
         let own = self.corners_of(caster, origins.first[i]);
-        reaches_behind(&own, triangle, light)
+        reaches_behind(&own, triangle, packet.light, packet.flat)
     }
 
     /// Returns the corners of a caster's triangle, in world space.
@@ -387,6 +391,8 @@ struct Packet {
     light: DVec3,
     /// The box around their origins.
     around: Around,
+    /// The distance within which a triangle of the caster and one of the points lie in one plane.
+    flat: f64,
     /// Whether the rays begin on the caster being traced.
     is_own: bool,
 }
@@ -402,6 +408,9 @@ impl<'a> InPlace<'a> {
         // The transformed corners are rounded, so the box is enlarged.
         let error = low.abs().max(high.abs()).max_element() * 1e-14;
         let object_from_world = m.inverse();
+        let scale = each([m.x_axis, m.y_axis, m.z_axis], |axis| axis.length());
+        let coordinate = own.corners().iter().fold(0.0, |most, p| p.abs().max_element().max(most));
+        let flat = FLAT * coordinate * scale.into_iter().fold(0.0, f64::max);
         let (low, high) = (low - error, high + error);
         // An infinite box or a singular placement cannot be traced and casts no shadow.
         let is_finite = low.is_finite() && high.is_finite() && object_from_world.is_finite();
@@ -412,6 +421,7 @@ impl<'a> InPlace<'a> {
             own,
             low,
             high,
+            flat,
             is_solid: caster.is_solid(),
         })
     }

@@ -29,6 +29,11 @@ pub(super) const ERROR: f64 = 1.0 / (1_u64 << 46) as f64;
 /// largest coordinate: about ten times the rounding of three products and two sums.
 pub(super) const OFF_PLANE: f64 = 1.0 / (1_u64 << 46) as f64;
 
+/// The distance within which triangles lie in one plane, relative to the largest coordinate in
+/// object space: files round coordinates to six decimals, and meshes to f32. Doubled faces and
+/// decals would shade each other in blotches otherwise.
+pub(super) const FLAT: f64 = 1.0 / (1_u64 << 20) as f64;
+
 fn place(p: DVec3) -> Coord3D<f64> {
     Coord3D { x: p.x, y: p.y, z: p.z }
 }
@@ -61,10 +66,17 @@ fn alike(a: f64, b: f64) -> bool {
     (a > 0.0 && b > 0.0) || (a < 0.0 && b < 0.0)
 }
 
-/// Returns whether any corner of a triangle lies behind the plane of another, seen from the light.
-pub(crate) fn reaches_behind(own: &Corners, triangle: &Corners, light: DVec3) -> bool {
+/// Returns whether any corner of a triangle lies behind the plane of another, seen from the light,
+/// by more than `flat`. Triangles within that distance of one plane do not shade each other.
+pub(crate) fn reaches_behind(own: &Corners, triangle: &Corners, light: DVec3, flat: f64) -> bool {
     let of_light = side(triangle, light);
-    own.iter().any(|corner| opposite(side(triangle, *corner), of_light))
+    let [a, b, c] = *triangle;
+    // The plane function is the distance from the plane times the length of this normal.
+    let least = flat * (b - a).cross(c - a).length();
+    own.iter().any(|corner| {
+        let own = side(triangle, *corner);
+        opposite(own, of_light) && own.abs() > least
+    })
 }
 
 /// A triangle prepared for the rays to one light. It blocks a point if all edge functions are at
