@@ -285,6 +285,8 @@ pub(crate) enum PoseLens {
     Shorter(f64),
     /// Degrees to the left and to the right, for pictures of any shape.
     Across(f64),
+    /// Degrees upwards and downwards, for pictures of any shape.
+    Upwards(f64),
     /// An orthographic projection, with half of the shorter side in units.
     Parallel(f64),
 }
@@ -294,7 +296,9 @@ impl PoseLens {
     const fn projection(self) -> Option<Projection> {
         match self {
             Self::Selected => None,
-            Self::Perspective | Self::Shorter(_) | Self::Across(_) => Some(Projection::Perspective),
+            Self::Perspective | Self::Shorter(_) | Self::Across(_) | Self::Upwards(_) => {
+                Some(Projection::Perspective)
+            }
             Self::Parallel(_) => Some(Projection::Orthographic),
         }
     }
@@ -304,14 +308,14 @@ impl Aim {
     /// Returns the aim for a picture of this size.
     #[expect(clippy::cast_precision_loss, reason = "at most 16,384 pixels")]
     pub(crate) fn at(self, size: Size) -> Self {
-        match self {
-            Self::Pose(pose, PoseLens::Across(degrees)) => {
-                let sides = (size.height as f64 / size.width as f64).min(1.0);
-                let tangent = libm::tan(degrees.to_radians()) * sides;
-                Self::Pose(pose, PoseLens::Shorter(libm::atan(tangent).to_degrees()))
-            }
-            Self::Options | Self::From(_) | Self::Pose(..) => self,
-        }
+        let [w, h] = [size.width as f64, size.height as f64];
+        let (pose, degrees, sides) = match self {
+            Self::Pose(pose, PoseLens::Across(degrees)) => (pose, degrees, h / w),
+            Self::Pose(pose, PoseLens::Upwards(degrees)) => (pose, degrees, w / h),
+            Self::Options | Self::From(_) | Self::Pose(..) => return self,
+        };
+        let tangent = libm::tan(degrees.to_radians()) * sides.min(1.0);
+        Self::Pose(pose, PoseLens::Shorter(libm::atan(tangent).to_degrees()))
     }
 }
 
@@ -414,7 +418,9 @@ fn place_camera(stage: &mut Stage, pose: Pose, lens: PoseLens) -> Result<(), Fai
     }
     let half_angle = match lens {
         PoseLens::Selected | PoseLens::Perspective | PoseLens::Parallel(_) => None,
-        PoseLens::Shorter(degrees) | PoseLens::Across(degrees) => Some(degrees),
+        PoseLens::Shorter(degrees) | PoseLens::Across(degrees) | PoseLens::Upwards(degrees) => {
+            Some(degrees)
+        }
     };
     stage.change(framing::from_pose(&stage.scene, &stage.view, pose, half_angle))?;
     stage.view.projection = lens.projection().unwrap_or(stage.view.projection);

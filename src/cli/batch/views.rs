@@ -139,8 +139,8 @@ struct Frame {
     own: Intrinsics,
 }
 
-/// Focal lengths, size and principal point in pixels, or the horizontal angle in radians. Lenses
-/// that distort are rejected.
+/// Focal lengths, size and principal point in pixels, or angles of view in radians. Lenses that
+/// distort are rejected.
 #[derive(Clone, Debug, Default, Deserialize)]
 struct Intrinsics {
     camera_model: Option<String>,
@@ -159,11 +159,16 @@ struct Intrinsics {
     w: Option<f64>,
     h: Option<f64>,
     camera_angle_x: Option<f64>,
+    camera_angle_y: Option<f64>,
 }
 
 impl Intrinsics {
     /// Returns these numbers, completed by shared ones.
     fn or(self, shared: &Self) -> Self {
+        // A lens may be stated in several ways, so it is taken from one place.
+        let own = [self.fl_x, self.fl_y, self.camera_angle_x, self.camera_angle_y];
+        let lens = if own.iter().any(Option::is_some) { &self } else { shared };
+        let Self { fl_x, fl_y, camera_angle_x, camera_angle_y, .. } = *lens;
         Self {
             camera_model: self.camera_model.or_else(|| shared.camera_model.clone()),
             k1: self.k1.or(shared.k1),
@@ -173,13 +178,14 @@ impl Intrinsics {
             p1: self.p1.or(shared.p1),
             p2: self.p2.or(shared.p2),
             is_fisheye: self.is_fisheye || shared.is_fisheye,
-            fl_x: self.fl_x.or(shared.fl_x),
-            fl_y: self.fl_y.or(shared.fl_y),
+            fl_x,
+            fl_y,
             cx: self.cx.or(shared.cx),
             cy: self.cy.or(shared.cy),
             w: self.w.or(shared.w),
             h: self.h.or(shared.h),
-            camera_angle_x: self.camera_angle_x.or(shared.camera_angle_x),
+            camera_angle_x,
+            camera_angle_y,
         }
     }
 
@@ -219,28 +225,40 @@ impl Intrinsics {
             is_right.then_some(degrees).ok_or_else(|| "the lens has no angle".to_owned())
         };
         let sides = size.map(|size| [size.width as f64, size.height as f64]);
-        if let (Some(fl_x), Some([w, h])) = (self.fl_x, sides) {
+        let off = |centre: Option<f64>, side: f64| {
+            centre.is_some_and(|centre| (centre - side / 2.0).abs() > 1.0)
+        };
+        if sides.is_some_and(|[w, h]| off(self.cx, w) || off(self.cy, h)) {
+            let reason = "cx, cy is not the centre of the picture, which is not supported";
+            return Err(reason.to_owned());
+        }
+        // Pixels are square: one focal length, or one angle, states the lens.
+        if let Some(fl_x) = self.fl_x.or(self.fl_y) {
             let fl_y = self.fl_y.unwrap_or(fl_x);
             if (fl_x - fl_y).abs() > fl_x.abs() / 1000.0 {
                 return Err("fl_x and fl_y differ: pixels are square here".to_owned());
             }
-            let off = |centre: Option<f64>, side: f64| {
-                centre.is_some_and(|centre| (centre - side / 2.0).abs() > 1.0)
+            let Some([w, h]) = sides else {
+                return Err("fl_x and fl_y are in pixels: w and h are needed".to_owned());
             };
-            if off(self.cx, w) || off(self.cy, h) {
-                let reason = "cx, cy is not the centre of the picture, which is not supported";
-                return Err(reason.to_owned());
-            }
             return half(w.min(h) / 2.0 / if w < h { fl_x } else { fl_y }).map(PoseLens::Shorter);
         }
-        if self.fl_x.is_some() {
-            return Err("fl_x is in pixels: w and h are needed".to_owned());
+        let tangent = |angle: Option<f64>| angle.map(|angle| libm::tan(angle / 2.0));
+        let [across, up] = [self.camera_angle_x, self.camera_angle_y].map(tangent);
+        if let (Some(across), Some(up), Some([w, h])) = (across, up, sides)
+            && (across * h - up * w).abs() > (across * h).abs() / 100.0
+        {
+            let reason = "camera_angle_x and camera_angle_y do not fit w and h: pixels are square";
+            return Err(reason.to_owned());
         }
-        let Some(angle) = self.camera_angle_x else { return Ok(otherwise) };
-        let across = libm::tan(angle / 2.0);
-        match sides {
-            Some([w, h]) => half(across * (h / w).min(1.0)).map(PoseLens::Shorter),
-            None => half(across).map(PoseLens::Across),
+        match (across, up, sides) {
+            (Some(across), _, Some([w, h])) => {
+                half(across * (h / w).min(1.0)).map(PoseLens::Shorter)
+            }
+            (Some(across), _, None) => half(across).map(PoseLens::Across),
+            (None, Some(up), Some([w, h])) => half(up * (w / h).min(1.0)).map(PoseLens::Shorter),
+            (None, Some(up), None) => half(up).map(PoseLens::Upwards),
+            (None, None, _) => Ok(otherwise),
         }
     }
 }
@@ -285,9 +303,12 @@ fn from_json(json: &[u8]) -> Result<Vec<CameraView>, String> {
 
 /// Converts a matrix from camera to world, given as rows.
 fn pose(rows: &[[f64; 4]]) -> Result<Pose, String> {
-    let [a, b, c, ..] = *rows else { return Err("transform_matrix has fewer than 3 rows".into()) };
-    let rows = [a, b, c, [0.0, 0.0, 0.0, 1.0]].map(DVec4::from_array);
-    let [a, b, c, d] = rows;
+    let rows = match *rows {
+        [a, b, c] => [a, b, c, [0.0, 0.0, 0.0, 1.0]],
+        [a, b, c, d] => [a, b, c, d],
+        _ => return Err(format!("transform_matrix needs 3 or 4 rows, not {}", rows.len())),
+    };
+    let [a, b, c, d] = rows.map(DVec4::from_array);
     Pose::from_matrix(DMat4::from_cols(a, b, c, d).transpose())
         .ok_or_else(|| "transform_matrix is not a rotation with a position".to_owned())
 }
@@ -384,6 +405,39 @@ mod tests {
     }
 
     #[test]
+    fn the_lens_of_a_file_is_vertical_too_and_that_of_a_frame_comes_first() {
+        let lens = |shared: &str, own: &str| {
+            let json = format!(
+                r#"{{{shared} "frames": [{{{own}
+                    "transform_matrix": [[1,0,0,0],[0,1,0,0],[0,0,1,4]]}}]}}"#
+            );
+            match from_json(json.as_bytes()).unwrap()[0].aim.at(Size::new(40, 30)) {
+                Aim::Pose(_, PoseLens::Shorter(half_angle)) => half_angle,
+                aim => panic!("{aim:?}"),
+            }
+        };
+        let (wide, tall) = (r#""w": 40, "h": 30,"#, r#""w": 30, "h": 40,"#);
+        // Half of the shorter side is 15 pixels in all of them.
+        for (shared, own, tangent) in [
+            (wide, r#""fl_y": 30,"#, 0.5),
+            (tall, r#""fl_y": 30,"#, 0.5),
+            (wide, r#""camera_angle_y": 0.8,"#, libm::tan(0.4)),
+            (tall, r#""camera_angle_y": 0.8,"#, 0.75 * libm::tan(0.4)),
+            ("", r#""camera_angle_y": 0.8,"#, libm::tan(0.4)),
+            (
+                r#""w": 40, "h": 30, "fl_x": 60,"#,
+                r#""camera_angle_x": 0.8,"#,
+                0.75 * libm::tan(0.4),
+            ),
+            (r#""w": 40, "h": 30, "fl_x": 60,"#, r#""fl_y": 30,"#, 0.5),
+            (r#""w": 40, "h": 30, "fl_y": 60,"#, "", 0.25),
+        ] {
+            let half_angle = libm::atan(tangent).to_degrees();
+            assert!((lens(shared, own) - half_angle).abs() < 1e-9, "{shared} {own}");
+        }
+    }
+
+    #[test]
     fn cameras_that_cannot_be_drawn_are_rejected_with_their_frame() {
         let frame = |lens: &str, matrix: &str| {
             let json = format!(r#"{{{lens} "frames": [{{"transform_matrix": {matrix}}}]}}"#);
@@ -391,12 +445,17 @@ mod tests {
         };
         let whole = "[[1,0,0,0],[0,1,0,0],[0,0,1,4]]";
         for (lens, matrix, reason) in [
-            ("", "[[1,0,0,0],[0,1,0,0]]", "fewer than 3 rows"),
+            ("", "[[1,0,0,0],[0,1,0,0]]", "3 or 4 rows"),
+            ("", "[[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,4,1]]", "not a rotation"),
+            ("", "[[1,0,0,0],[0,1,0,0],[0,0,1,4],[0,0,0,2]]", "not a rotation"),
             ("", "[[2,0,0,0],[0,2,0,0],[0,0,2,4]]", "not a rotation"),
             ("", "[[-1,0,0,0],[0,1,0,0],[0,0,1,4]]", "not a rotation"),
             (r#""fl_x": 100, "fl_y": 90, "w": 64, "h": 64,"#, whole, "differ"),
             (r#""fl_x": 100, "cx": 10, "w": 64, "h": 64,"#, whole, "centre"),
             (r#""fl_x": 100,"#, whole, "w and h are needed"),
+            (r#""fl_y": 100,"#, whole, "w and h are needed"),
+            (r#""camera_angle_x": 1, "cy": 10, "w": 64, "h": 64,"#, whole, "centre"),
+            (r#""camera_angle_x": 1, "camera_angle_y": 0.9, "w": 64, "h": 64,"#, whole, "square"),
             (r#""w": 0.5, "h": 64,"#, whole, "whole numbers"),
             (r#""k1": 0.1, "p2": 0,"#, whole, "lenses that distort"),
             (r#""p1": -0.01,"#, whole, "lenses that distort"),

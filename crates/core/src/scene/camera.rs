@@ -1,6 +1,6 @@
 //! A camera, its pose and its lens. It looks along -Z of its frame.
 
-use glam::{DMat3, DMat4, DVec3};
+use glam::{DMat3, DMat4, DVec3, DVec4};
 use serde::{Deserialize, Serialize};
 
 use super::{MaterialChoice, Model, ObjectId, Projection, Tracked};
@@ -71,11 +71,14 @@ impl Pose {
     /// Creates a pose from a matrix `world_from_camera`; `None` unless it is a rotation with a
     /// position. Matrices in files have few digits, so the axes are made orthonormal again.
     pub fn from_matrix(world_from_camera: DMat4) -> Option<Self> {
-        /// The largest difference of an entry of R R' from the identity.
+        /// The largest difference of an entry of R R' from the identity, and of the last row from
+        /// 0 0 0 1.
         const MOST: f64 = 1e-3;
         let (axes, eye) = (DMat3::from_mat4(world_from_camera), world_from_camera.w_axis);
         let is_rotation = (axes * axes.transpose()).abs_diff_eq(DMat3::IDENTITY, MOST);
-        if !is_rotation || axes.determinant() < 0.0 || !eye.is_finite() {
+        // A matrix for row vectors has the position in its last row.
+        let is_affine = world_from_camera.row(3).abs_diff_eq(DVec4::W, MOST);
+        if !is_rotation || !is_affine || axes.determinant() < 0.0 || !eye.is_finite() {
             return None;
         }
         let z = axes.z_axis.normalize_or_zero();
