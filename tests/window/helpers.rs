@@ -10,7 +10,7 @@ use marraztu::app::actions::{Action, Also, Request};
 use marraztu_core::base::Shared;
 use marraztu_core::edit::{Gesture, arrange, items};
 use marraztu_core::scene::{
-    ItemId, LightKind, LoadOptions, MaterialChoice, Object, PresetId, Scene,
+    Crease, ItemId, LightKind, LoadOptions, MaterialChoice, Object, PresetId, Scene,
 };
 use marraztu_io as io;
 
@@ -151,6 +151,7 @@ fn change(editor: &mut Editor, command: marraztu_core::scene::Command) {
 
 const ONE: &str = "v 0 0 0\nv 60 0 0\nv 0 60 0\nf 1 2 3\n";
 const TWO: &str = "v 0 0 0\nv 60 0 0\nv 0 60 0\nv 60 60 0\nf 1 2 3\nf 2 4 3\n";
+const THREE: &str = "v 0 0 0\nv 60 0 0\nv 0 60 0\nf 1 2 3\nf 1 2 3\nf 1 2 3\n";
 
 /// An editor with a model file of one triangle.
 fn with_file(path: &std::path::Path) -> Editor {
@@ -202,6 +203,31 @@ fn models_are_read_again_in_one_step_and_a_broken_file_changes_nothing() {
     editor.perform(Action::ReloadModels);
     let told = editor.harness.get_by_role(egui::accesskit::Role::Alert).accesskit_node().label();
     assert_eq!(told.as_deref(), Some("no object was loaded from a file"));
+}
+
+#[test]
+fn a_file_that_is_saved_again_while_it_is_reloaded_is_shown_in_its_last_version() {
+    // Between two reloads, the user does nothing, or changes the model's options.
+    for changes_crease in [false, true] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("sail.obj");
+        let mut editor = with_file(&path);
+        let ctx = editor.harness.ctx.clone();
+        for version in [TWO, THREE] {
+            std::fs::write(&path, version).unwrap();
+            let app = editor.harness.state_mut();
+            app.perform(&ctx, Action::ReloadModels, Gesture::Whole);
+            // No frame takes the first version before the second is read.
+            std::thread::sleep(std::time::Duration::from_millis(200));
+        }
+        if changes_crease {
+            let id = editor.scene().objects.ids().next().unwrap();
+            let crease = Crease::new(90.0).unwrap();
+            let command = items::set_crease(&editor.scene(), id, crease).unwrap();
+            change(&mut editor, command);
+        }
+        until(&mut editor, |editor| polygons(&editor.scene()) == 3);
+    }
 }
 
 #[test]

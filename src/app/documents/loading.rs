@@ -85,7 +85,8 @@ pub(crate) struct Turned {
 /// The result of reading a model again.
 #[derive(Debug)]
 pub(crate) struct Reread {
-    pub(crate) before: Shared<Model>,
+    pub(crate) path: PathBuf,
+    pub(crate) options: LoadOptions,
     pub(crate) result: Result<Loaded, LoadError>,
 }
 

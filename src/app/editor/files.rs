@@ -239,7 +239,7 @@ impl App {
             }
             Fetched::Pasted(result) => self.take_pasted(result),
             Fetched::Turned(read, up) => self.take_turned(read, up),
-            Fetched::Again(all) => self.take_again(all),
+            Fetched::Again(all) => self.take_again(ctx, all),
             Fetched::Found(all) => self.take_found(all),
             Fetched::Scene(opening) => self.take_scene(ctx, *opening),
             Fetched::Alone(read, arrival) => self.take_alone(ctx, read, arrival),

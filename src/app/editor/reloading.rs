@@ -18,7 +18,7 @@ use crate::app::state::Notice;
 use crate::app::widgets::text::{file_name, one_or_count};
 use marraztu_core::base::Shared;
 use marraztu_core::edit::Gesture;
-use marraztu_core::scene::{Command, Model, Scene};
+use marraztu_core::scene::{Command, LoadOptions, Model, Scene};
 use marraztu_io::{self as io, LoadError, is_example};
 
 /// The time between two checks of the files.
@@ -27,13 +27,12 @@ const PAUSE: Duration = Duration::from_millis(500);
 impl App {
     /// Reads the models of the scene again: all of them, or only from these files.
     pub(crate) fn reload_models(&mut self, ctx: &Context, only: Option<&BTreeSet<PathBuf>>) {
-        let mut wanted: Vec<(PathBuf, Shared<Model>)> = Vec::new();
-        // Objects that share a model have it read once.
-        for (_, object) in self.state.scene.objects.iter() {
-            let Some(path) = file_of(&object.model) else { continue };
-            let is_known = wanted.iter().any(|(_, model)| Shared::same(model, &object.model));
-            if !is_known && only.is_none_or(|only| only.contains(path)) {
-                wanted.push((path.clone(), object.model.clone()));
+        let mut wanted: Vec<(PathBuf, LoadOptions)> = Vec::new();
+        // A file is read once for all objects with the same options.
+        for (path, model) in models(&self.state.scene) {
+            let file = (path.clone(), model.options);
+            if !wanted.contains(&file) && only.is_none_or(|only| only.contains(path)) {
+                wanted.push(file);
             }
         }
         if wanted.is_empty() {
@@ -45,37 +44,58 @@ impl App {
         let what = one_or_count(&wanted, "models", |(path, _)| file_name(path));
         let label = format!("Reloading {what}");
         self.begin_loading(ctx, label, false, move |progress| {
-            let read = |(path, before): (PathBuf, Shared<Model>)| Reread {
-                result: io::load(&path, &before.options, progress),
-                before,
+            let read = |(path, options): (PathBuf, LoadOptions)| Reread {
+                result: io::load(&path, &options, progress),
+                path,
+                options,
             };
             Fetched::Again(wanted.into_iter().map(read).collect())
         });
     }
 
     /// Replaces models by those read again, in one step of undo.
-    pub(crate) fn take_again(&mut self, all: Vec<Reread>) {
+    pub(crate) fn take_again(&mut self, ctx: &Context, all: Vec<Reread>) {
         let (mut replacements, mut names) = (Replacements::default(), Vec::new());
-        for Reread { before, result } in all {
-            match result {
+        let mut read: Vec<(PathBuf, LoadOptions, Option<Shared<Model>>)> = Vec::new();
+        for Reread { path, options, result } in all {
+            let model = match result {
                 Ok(loaded) => {
                     names.push(loaded.model.name.clone());
-                    replacements.models.push((before, Shared::new(loaded.model)));
+                    Some(Shared::new(loaded.model))
                 }
-                Err(LoadError::Cancelled) => {}
+                Err(LoadError::Cancelled) => None,
                 Err(error) => {
                     let text = format!("{error}. The model is unchanged.");
                     self.state.notices.push(Notice::new(text));
+                    None
                 }
+            };
+            read.push((path, options, model));
+        }
+        // The models to replace are those of now: the user, or another reload, may have replaced
+        // the former ones while the file was read.
+        let mut outdated = BTreeSet::new();
+        for (path, now) in models(&self.state.scene) {
+            let mut of_file = read.iter().filter(|(file, ..)| file == path);
+            match of_file.clone().find(|(_, options, _)| *options == now.options) {
+                Some((.., model)) => {
+                    replacements.models.extend(model.clone().map(|model| (now.clone(), model)));
+                }
+                None if of_file.any(|(.., model)| model.is_some()) => {
+                    outdated.insert(path.clone());
+                }
+                None => {}
             }
         }
         let commands: Vec<Command> = replacements.of_objects(&self.state.scene).collect();
-        if commands.is_empty() {
-            return;
+        if !commands.is_empty() {
+            let label = format!("Reload {}", one_or_count(&names, "models", String::clone));
+            self.change(Command::Batch(commands), Gesture::Whole, &label);
+            self.state.tell(Some(label));
         }
-        let label = format!("Reload {}", one_or_count(&names, "models", String::clone));
-        self.change(Command::Batch(commands), Gesture::Whole, &label);
-        self.state.tell(Some(label));
+        if !outdated.is_empty() {
+            self.reload_models(ctx, Some(&outdated));
+        }
     }
 
     /// Starts or stops watching files, and reads changed files again.
@@ -93,9 +113,13 @@ impl App {
     }
 }
 
-/// Returns the file of a model; `None` for the program's models.
-fn file_of(model: &Model) -> Option<&PathBuf> {
-    model.source.as_ref().filter(|path| !is_example(path))
+/// Lists the models of objects that were read from files, with these files.
+fn models(scene: &Scene) -> impl Iterator<Item = (&PathBuf, &Shared<Model>)> {
+    let models = scene.objects.iter().map(|(_, object)| &object.model);
+    models.filter_map(|model| {
+        let path = model.source.as_ref().filter(|path| !is_example(path))?;
+        Some((path, model))
+    })
 }
 
 /// Watched files.
@@ -135,8 +159,7 @@ impl Watch {
         if self.of.as_ref() == Some(scene) {
             return;
         }
-        let paths: BTreeSet<&PathBuf> =
-            scene.objects.iter().filter_map(|(_, object)| file_of(&object.model)).collect();
+        let paths: BTreeSet<&PathBuf> = models(scene).map(|(path, _)| path).collect();
         let mut files = lock(&self.files);
         // Known files keep their stamps, so a change between two scenes is not missed.
         files.seen.retain(|path, _| paths.contains(path));
