@@ -47,6 +47,10 @@ const TOWER: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n\
     v 0 0 5\nv 1 0 5\nv 1 1 5\nv 0 1 5\n\
     f 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n";
 
+/// A face of height 5 along Z.
+const TOWER_STL: &str = "solid tower\nfacet normal 0 1 0\nouter loop\n\
+    vertex 0 0 0\nvertex 0 0 5\nvertex 1 0 0\nendloop\nendfacet\nendsolid tower\n";
+
 #[test]
 fn a_notice_that_needs_no_answer_goes_to_the_status_line_and_is_listed_there() {
     let (_folder, path) = folder_with("cube.obj", CUBE);
@@ -154,6 +158,19 @@ fn an_axis_that_the_file_states_is_used_and_said() {
     editor.ask(Request::Preferences(Box::new(preferences)));
     editor.open_alone(&y);
     assert_eq!(editor.up(), UpAxis::Y);
+}
+
+#[test]
+fn the_z_axis_of_stl_files_is_up_as_on_the_command_line() {
+    let (_folder, path) = folder_with("tower.stl", TOWER_STL);
+    for last in [UpAxis::Y, UpAxis::MinusY] {
+        let mut editor = Editor::of_size(1280.0, 800.0);
+        let preferences = marraztu_io::Preferences { up: last, ..Default::default() };
+        editor.ask(Request::Preferences(Box::new(preferences)));
+        editor.open_alone(&path);
+        assert_eq!((editor.up(), editor.top()), (UpAxis::Z, 5.0));
+        assert!(editor.shows("Z is up, as usual in STL files."));
+    }
 }
 
 #[test]

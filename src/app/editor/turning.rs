@@ -1,5 +1,5 @@
-//! The up axis of a model's file: the axis that the file states, or else the user's last choice. An
-//! opened model is turned by reading it again.
+//! The up axis of a model's file: the axis that the file states or that is usual for its format, or
+//! else the user's last choice. An opened model is turned by reading it again.
 
 use std::path::{Path, PathBuf};
 
@@ -15,20 +15,19 @@ use marraztu_core::scene::{Command, LoadOptions, Model, ObjectId, UpAxis};
 use marraztu_io::{self as io, is_example};
 
 /// Returns the up axis for opening a model, and a sentence if it is not Y. It is the axis that the
-/// file states, or else the last choice.
+/// file states or that is usual for its format, or else the last choice.
 pub(super) fn usual_up(path: &Path, last: UpAxis) -> (UpAxis, Option<String>) {
     if is_example(path) {
         return (UpAxis::Y, None);
     }
     let stated = io::stated_up(path);
-    let up = stated.as_ref().map_or(last, |stated| stated.up);
-    let letter = up.word().to_uppercase();
-    let said = match stated {
-        _ if up == UpAxis::Y => None,
-        Some(stated) => Some(format!("{letter} is up: its file says \"{}\".", stated.comment)),
-        None => Some(format!("{letter} is up, as you chose last.")),
+    let (up, why) = match (stated, io::usual_up(path)) {
+        (Some(stated), _) => (stated.up, format!(": its file says \"{}\"", stated.comment)),
+        (None, UpAxis::Y) => (last, ", as you chose last".to_owned()),
+        (None, usual) => (usual, ", as usual in STL files".to_owned()),
     };
-    (up, said)
+    let letter = up.word().to_uppercase();
+    (up, (up != UpAxis::Y).then(|| format!("{letter} is up{why}.")))
 }
 
 impl App {
