@@ -3,9 +3,14 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on may panic")]
 #![expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small numbers")]
 
-use marraztu_core::accuracy::{Arithmetic, LightAt, Samples, Settings, Shot, SpecularForm};
+use marraztu_core::accuracy::{
+    Arithmetic, LightAt, LightValues, Resolution, Samples, Settings, Shot, SpecularForm,
+    Transparency,
+};
+use marraztu_core::base::color;
 use marraztu_core::base::image::Size;
 use marraztu_core::base::rng::Rng;
+use marraztu_core::edit::items;
 use marraztu_core::scene::{Fill, Projection, Scene, View};
 use marraztu_io::{self as io, Progress};
 use marraztu_lab::pixel;
@@ -99,6 +104,63 @@ fn every_example_adds_up() {
         let settings = Settings { samples: Samples::One, ..opened.settings };
         adds_up(&opened.scene, &opened.view, &settings, &random_pixels(9, 100));
     }
+}
+
+#[test]
+fn every_way_to_blend_and_to_enlarge_adds_up() {
+    let opened = io::open("assets/effects/everything.marraztu".as_ref(), &Progress::new()).unwrap();
+    // Of the first scene, glass shows the background as well.
+    let (mut glass, view) = io::default_scene();
+    items::change_all_objects(&glass, |it| it.opacity = 0.5).apply(&mut glass).unwrap();
+    let scenes = [(opened.scene, opened.view), (glass, view)];
+    let all = all_blends(&opened.settings);
+    let all = scenes.iter().flat_map(|scene| all.iter().map(move |settings| (scene, settings)));
+    let size = Size::new(40, 27);
+    let (mut blended, mut enlarged) = (0, 0);
+    for ((scene, view), settings) in all {
+        let mut renderer = Renderer::default();
+        let shot = Shot::new(scene, view, settings, size);
+        let picture = renderer.render(&plan_frame(&shot)).clone();
+        for [x, y] in (0..size.area()).map(|at| [at % size.width, at / size.width]) {
+            let explained = renderer.explain(x, y).unwrap();
+            let [r, g, b, _] = picture.pixel(x, y);
+            let of = format!("{settings:?} pixel {x},{y}: {explained:?}");
+            assert_eq!((explained.at, explained.bytes), ([x, y], [r, g, b]), "{of}");
+            for (i, byte) in explained.bytes.into_iter().enumerate() {
+                let sum = explained.terms.iter().map(|term| term.value[i]).sum::<f64>();
+                let color = explained.color[i];
+                assert!((sum + explained.rounding[i] - color).abs() < 1e-14, "{of}");
+                // Where layers are blended, fixed-point numbers add to the error.
+                let stored = if explained.linear { color::encoded(color) } else { color };
+                let steps = stored.clamp(0.0, 1.0) * 255.0;
+                assert!((steps - f64::from(byte)).abs() < 0.502, "{of}");
+            }
+            let has = |part| usize::from(explained.terms.iter().any(|term| term.part == part));
+            blended += has(Part::Blending);
+            enlarged += has(Part::Enlarged);
+            let drawn = (settings.resolution == Resolution::Half).then_some([x / 2, y / 2]);
+            assert_eq!(explained.drawn, drawn, "{of}");
+            let lines = pixel::lines(scene, &explained);
+            assert_eq!(lines[0], format!("pixel {x},{y}"));
+            assert_eq!(lines[1].contains("half the size"), drawn.is_some(), "{}", lines[1]);
+        }
+    }
+    assert!(blended > 20 && enlarged > 1000, "{blended} {enlarged}");
+}
+
+/// Returns settings with each way to blend, in both kinds of values and both resolutions.
+fn all_blends(settings: &Settings) -> Vec<Settings> {
+    let mut all = Vec::new();
+    for transparency in [Transparency::Weighted, Transparency::Objects, Transparency::Exact] {
+        for light_values in [LightValues::Stored, LightValues::Linear] {
+            for resolution in [Resolution::Full, Resolution::Half] {
+                let samples = Samples::One;
+                let own = Settings { samples, transparency, light_values, ..*settings };
+                all.push(Settings { resolution, ..own });
+            }
+        }
+    }
+    all
 }
 
 #[test]

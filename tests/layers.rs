@@ -18,6 +18,7 @@ use marraztu_core::scene::{
     Scene, Sides, SourceCorner, View, dvec3,
 };
 use marraztu_io::{self as io, Progress};
+use marraztu_lab::pixel;
 use marraztu_render::{
     AxesConvention, Layer, LayerSet, Layers, NormalSpace, PictureCamera, Renderer, plan_frame,
 };
@@ -181,7 +182,11 @@ fn ids_name_what_the_editor_picks_and_normals_are_those_that_light_uses() {
             assert!((rotation * cameras[i]).distance(worlds[i]) < 1e-6, "{name} {x},{y}");
             // Every seventh pixel is enough. Bump maps tilt the explained normal only.
             if i % 7 == 0 && name != "dimples" {
-                let point = renderer.explain(x, y).unwrap().surface.unwrap();
+                let explained = renderer.explain(x, y).unwrap();
+                let lines = pixel::lines(&shot.scene, &explained);
+                let own = format!(" {}, triangle", layers.ids(Layer::Polygon)[i]);
+                assert!(lines[2].contains(&own), "{name} {x},{y}: {lines:?}");
+                let point = explained.surface.unwrap();
                 let normal = worlds[i];
                 assert!(normal.distance(point.normal) < 1e-6, "{name} {x},{y}: {normal} {point:?}");
                 // Light is computed on the ray through the centre, at the depth of the triangle.

@@ -32,7 +32,9 @@ pub(crate) struct Shot {
 struct Surface {
     /// The id of the object; 0 for marks of cameras and lights.
     object: i32,
+    /// From 1, as in the layer.
     polygon: u32,
+    /// From 0: a row of the triangles.
     triangle: u32,
     barycentrics: [f64; 3],
     depth: f64,
@@ -215,7 +217,7 @@ impl Shot {
                     ItemId::Object(id) => self.ids.get(&id).copied().unwrap_or_default(),
                     ItemId::Camera(_) | ItemId::Light(_) => 0,
                 },
-                polygon: point.polygon,
+                polygon: point.polygon + 1,
                 triangle: point.triangle,
                 barycentrics: point.weights.to_array(),
                 depth: point.distance,

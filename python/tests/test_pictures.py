@@ -71,7 +71,9 @@ def test_saved_pictures_come_back_and_no_other_file_is_replaced(cam, tmp_path):
     with pytest.raises(OSError, match="has to end in"):
         picture.save(tmp_path / "a.tiff")
     picture.save(tmp_path / "a.npz")
-    assert np.array_equal(np.load(tmp_path / "a.npz")["color"], picture.color)
+    picture.save(tmp_path / "B.NPZ")
+    for name in ("a.npz", "B.NPZ"):
+        assert np.array_equal(np.load(tmp_path / name)["color"], picture.color)
 
 
 def test_wrong_arguments_have_one_clear_error(cam):
@@ -197,7 +199,13 @@ def test_an_explained_colour_is_the_sum_of_its_terms(cam):
     total = np.sum([value for _, value in explanation.terms], axis=0)
     assert np.allclose(np.clip(np.round(total), 0, 255), explanation.color, atol=1)
     assert explanation.surface.object == scene.nodes[0].id
+    polygons = scene.render(64, 48, layers=("polygon",)).polygon
+    assert explanation.surface.polygon == polygons[24, 32]
     assert "clamped and rounded" in str(explanation)
+    draft = scene.render(64, 48, preset="draft")
+    explanation = scene.explain(33, 25, 64, 48, preset="draft")
+    assert explanation.color == tuple(draft.color[25, 33])
+    assert "pixel 33,25" in str(explanation) and "half the size" in str(explanation)
     assert scene.explain(0, 0, 64, 48).surface is None
     with pytest.raises(IndexError, match="outside of 64 x 48"):
         scene.explain(64, 0, 64, 48)

@@ -17,6 +17,7 @@ use super::values::{Pixel, pixel as parse_pixel};
 Takes the files and options of `render`. Lists the surface of the pixel, its vectors, and the
 ambient, diffuse and specular terms of each light in byte steps. Their sum, clamped and rounded, is
 the byte of the picture. With several samples per pixel, explains the light at the pixel's centre.
+At half the resolution, explains the drawn pixel; enlarging it adds the mean with its neighbours.
 
 Examples:
   marraztu explain --at 400,300

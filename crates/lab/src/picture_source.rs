@@ -104,10 +104,11 @@ impl Studio {
         &self.shot
     }
 
-    /// Returns the name of the item at a pixel of the last picture, and the polygon.
+    /// Returns the name of the item at a pixel of the last picture, and the number of the polygon,
+    /// from 1.
     pub fn seen(&mut self, [x, y]: [usize; 2]) -> Option<(String, u32)> {
         let hit = self.renderer.hit(x, y)?;
-        Some((self.shot.scene.name(hit.item)?.to_owned(), hit.polygon))
+        Some((self.shot.scene.name(hit.item)?.to_owned(), hit.polygon + 1))
     }
 }
 

@@ -49,9 +49,11 @@ pub fn facts(scene: &Scene, point: &SurfacePoint) -> Vec<[String; 2]> {
         Some(LightAt::Vertex) => "at the corners",
         Some(LightAt::Pixel | LightAt::Sample) => "at the pixel",
     };
+    // Numbers count from 1, as in the layer and in polygon mode.
+    let [polygon, triangle] = [point.polygon, point.triangle].map(|index| index + 1);
     let mut facts = vec![
         ["shows".to_owned(), format!("{}, {side}", scene.name(point.item).unwrap_or("nothing"))],
-        ["polygon".to_owned(), format!("{}, triangle {}", point.polygon, point.triangle)],
+        ["polygon".to_owned(), format!("{polygon}, triangle {triangle}")],
         ["barycentrics".to_owned(), vector(point.weights)],
         ["distance".to_owned(), number(point.distance)],
         ["position".to_owned(), vector(point.position)],
@@ -89,10 +91,17 @@ pub fn ray_line(ray: &LightRay) -> String {
     line
 }
 
+/// Says which pixel was drawn, if the picture was enlarged.
+pub fn drawn_line(explained: &PixelColor) -> Option<String> {
+    let [x, y] = explained.drawn?;
+    Some(format!("Drawn at half the size: this is the light of its pixel {x},{y}."))
+}
+
 /// Writes the whole explanation as text, line by line.
 pub fn lines(scene: &Scene, explained: &PixelColor) -> Vec<String> {
     let [x, y] = explained.at;
     let mut lines = vec![format!("pixel {x},{y}")];
+    lines.extend(drawn_line(explained).map(|line| format!("  {line}")));
     if let Some(point) = &explained.surface {
         let facts = facts(scene, point);
         lines.extend(facts.iter().map(|[name, value]| format!("  {name:<17}{value}")));

@@ -40,6 +40,7 @@ pub enum Layer {
     /// i32: the material, from 1; 0 for the background. [`LayerNames::materials`] lists them.
     Material,
     /// i32: the polygon of the object, from 1, in the order of its file; 0 for the background.
+    /// Faces that are skipped when the file is read do not count.
     Polygon,
     /// u8: 1 if the pixel shows an object, 0 for the background.
     Mask,

@@ -122,7 +122,9 @@ class Picture:
         if path.lower().endswith(".npz"):
             import numpy as np
 
-            np.savez(path, **{name: getattr(self, name) for name in self.layers})
+            # NumPy would append .npz to a name that ends in .NPZ.
+            with open(path, "wb") as file:
+                np.savez(file, **{name: getattr(self, name) for name in self.layers})
         else:
             _marraztu.save_picture(path, self.rgba)
 

@@ -20,7 +20,9 @@ class Surface(NamedTuple):
     object: int
     """The id of the node; 0 for a mark of a camera or a light."""
     polygon: int
+    """The number of the polygon, from 1, as in the layer."""
     triangle: int
+    """The row of `Mesh.triangles`, from 0."""
     barycentrics: tuple[float, float, float]
     depth: float
     """The distance along the camera's axis, in units of the models."""
@@ -38,7 +40,8 @@ class Explanation(NamedTuple):
     surface: Surface | None
     """None for the background and for lines."""
     terms: tuple[tuple[str, tuple[float, float, float]], ...]
-    """Light by light, in steps of a byte. Their sum, clamped and rounded, is the colour."""
+    """Light by light, in steps of a byte. Their sum, clamped and rounded, is the colour; with
+    `values="linear"`, it is linear light, which is encoded first."""
 
     def __str__(self) -> str:
         return self.text

@@ -65,6 +65,9 @@ fn explained_ui(ui: &mut Ui, state: &State, pixel: &ExplainedPixel, explained: &
     if explained.linear {
         ui.weak("Linear light: encoded in sRGB before it is rounded.");
     }
+    if let Some(line) = pixel::drawn_line(explained) {
+        ui.weak(line);
+    }
     let samples = state.refined_to().unwrap_or(pixel.shot.settings.samples);
     if samples.count() > 1 {
         let count = samples.count();

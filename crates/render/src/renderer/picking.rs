@@ -24,7 +24,7 @@ use crate::shading::interpolated::ShadingNumber;
 use crate::shading::light::Lit;
 use crate::shading::light_terms::LightTerms;
 use crate::shading::painter::bounds_of;
-use crate::shading::pixel_color::PixelColor;
+use crate::shading::pixel_color::{Part, PixelColor};
 use crate::shadow::tracer::Tracer;
 use crate::tile_layers::TileLayers;
 use marraztu_core::accuracy::{Arithmetic, Samples};
@@ -93,17 +93,26 @@ impl Renderer {
     }
 
     /// Returns the contents of the pixel in column `x` of row `y` and the parts of its colour. A
-    /// pixel with several samples is explained by the light at its centre.
+    /// pixel with several samples is explained by the light at its centre, and one of a picture
+    /// drawn at half the size by the light of its drawn pixel.
     #[must_use]
     pub fn explain(&mut self, x: usize, y: usize) -> Option<PixelColor> {
         self.build_again();
         let plan = self.plan.as_ref()?;
         let at = drawn_pixel(plan, [x, y])?;
         plan.prepare();
-        Some(match plan.arithmetic {
+        let mut explained = match plan.arithmetic {
             Arithmetic::F32 => self.explain_in::<f32>(plan, at),
             Arithmetic::F64 => self.explain_in::<f64>(plan, at),
-        })
+        };
+        if plan.enlarged.is_some() {
+            explained.drawn = Some(std::mem::replace(&mut explained.at, [x, y]));
+            let [r, g, b, _] = self.enlarged.pixel(x, y);
+            if plan.samples == Samples::One && explained.bytes != [r, g, b] {
+                explained.lead_to([r, g, b], Part::Enlarged);
+            }
+        }
+        Some(explained)
     }
 
     fn explain_in<T: ShadingNumber>(&self, plan: &FramePlan, at: [i32; 2]) -> PixelColor {

@@ -22,7 +22,8 @@ use crate::lights::Batch;
 use crate::raster::visibility_buffer::{Visible, seen};
 use crate::screen::coverage::PixelBox;
 use crate::shadow::rays::{Origins, RayScratch};
-use marraztu_core::accuracy::LightAt;
+use marraztu_core::accuracy::{LightAt, Rounding};
+use marraztu_core::base::color;
 
 /// The pixel of a tile to be explained.
 #[derive(Clone, Copy, Debug)]
@@ -49,13 +50,14 @@ pub(crate) fn explain<T: ShadingNumber>(
     if asked.words.len() < 2 {
         return whole;
     }
-    // Only clamped colours are blended, as in the picture.
-    clamp(&mut whole);
+    // Only clamped colours are blended, as in the picture, and all in linear light or none.
+    let linear = context.plan.variants.are_linear();
+    make_blendable(&mut whole, linear);
     // Alpha blending scales the terms of a layer by its opacity, and all terms behind it by the
     // rest.
     for word in &asked.words[1..] {
         let (mut layer, opacity) = one(context, asked, *word);
-        clamp(&mut layer);
+        make_blendable(&mut layer, linear);
         let over = |front: [f64; 3], back: [f64; 3]| {
             [0, 1, 2].map(|i| front[i] * opacity + back[i] * (1.0 - opacity))
         };
@@ -71,17 +73,29 @@ pub(crate) fn explain<T: ShadingNumber>(
         }));
         whole = layer;
     }
-    // Other blending methods have a different mean; the difference is a separate term.
-    let other = [0, 1, 2].map(|i| f64::from(asked.bytes[i]) / 255.0 - whole.color[i]);
-    if other.iter().any(|x| x.abs() > 1.0 / 255.0) && !whole.linear {
-        whole.terms.push(Term::new(Part::Blending, other));
-        whole.color = plus(whole.color, other);
+    // Other blending methods have a different mean; the difference is a separate term, unless it
+    // may come from rounding to a byte and from the fixed-point numbers of blended colours.
+    let most = 0.001
+        + match context.plan.variants.rounding {
+            Rounding::Nearest => 0.5,
+            Rounding::Truncated | Rounding::Dithered => 1.0,
+        };
+    let stored = |x: f64| if linear { color::encoded(x) } else { x };
+    let other = |(x, byte): (f64, u8)| (stored(x) * 255.0 - f64::from(byte)).abs() > most;
+    if whole.color.into_iter().zip(asked.bytes).any(other) {
+        whole.lead_to(asked.bytes, Part::Blending);
     }
     PixelColor { bytes: asked.bytes, ..whole }
 }
 
-/// Clamps a colour to be blended, and records the clipped light as a term.
-fn clamp(of: &mut PixelColor) {
+/// Clamps a colour to be blended, and records the clipped light as a term. In a `linear` picture,
+/// also decodes the colour of a surface that is not lit.
+fn make_blendable(of: &mut PixelColor, linear: bool) {
+    if linear && !of.linear {
+        of.color = of.color.map(color::linear);
+        of.terms = of.terms.iter().map(|term| Term::new(term.part, of.color)).collect();
+        of.linear = true;
+    }
     let cut = of.color.map(|x| x.clamp(0.0, 1.0) - x);
     if cut != [0.0; 3] {
         of.terms.push(Term::new(Part::Cut, cut));
@@ -121,7 +135,7 @@ fn one<T: ShadingNumber>(
 fn plain(at: [usize; 2], part: Part, bytes: [u8; 3]) -> PixelColor {
     let color = bytes.map(|byte| f64::from(byte) / 255.0);
     let (rounding, terms) = ([0.0; 3], vec![Term::new(part, color)]);
-    PixelColor { at, surface: None, terms, rounding, color, linear: false, bytes }
+    PixelColor { at, drawn: None, surface: None, terms, rounding, color, linear: false, bytes }
 }
 
 /// A pixel that shows a triangle.
@@ -171,7 +185,7 @@ impl<T: ShadingNumber> Point<'_, T> {
         let rounding = [0, 1, 2].map(|i| color[i] - sum[i]);
         let linear = plan.variants.are_linear();
         let (at, surface) = (self.at, Some(surface));
-        (PixelColor { at, surface, terms, rounding, color, linear, bytes }, opacity)
+        (PixelColor { at, drawn: None, surface, terms, rounding, color, linear, bytes }, opacity)
     }
 
     /// Returns the point's position on the surface. Afterwards the batch holds its position and

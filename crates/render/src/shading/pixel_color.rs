@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use marraztu_core::accuracy::LightAt;
+use marraztu_core::base::color;
 use marraztu_core::scene::{ItemId, LightId};
 
 /// One pixel of a picture, with the terms of its colour.
@@ -10,6 +11,9 @@ use marraztu_core::scene::{ItemId, LightId};
 pub struct PixelColor {
     /// The column and row, from the upper left.
     pub at: [usize; 2],
+    /// The column and row of the drawn pixel whose light is explained, if the picture was drawn at
+    /// half the size and enlarged.
+    pub drawn: Option<[usize; 2]>,
     /// The visible surface; `None` for the background or a line.
     pub surface: Option<SurfacePoint>,
     /// The terms of the colour, as factors from 0 to 1. Together with [`Self::rounding`] they add
@@ -25,14 +29,24 @@ pub struct PixelColor {
     pub bytes: [u8; 3],
 }
 
+impl PixelColor {
+    /// Adds the part that leads from the colour to these bytes.
+    pub(crate) fn lead_to(&mut self, bytes: [u8; 3], part: Part) {
+        let value = |stored: f64| if self.linear { color::linear(stored) } else { stored };
+        let color = bytes.map(|byte| value(f64::from(byte) / 255.0));
+        self.terms.push(Term::new(part, [0, 1, 2].map(|i| color[i] - self.color[i])));
+        (self.color, self.bytes) = (color, bytes);
+    }
+}
+
 /// A point of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfacePoint {
     /// The object, the camera if its mark is shown, or the light if its bulb is shown.
     pub item: ItemId,
-    /// The polygon of the item's mesh.
+    /// The polygon of the item's mesh, from 0.
     pub polygon: u32,
-    /// The triangle of the item's mesh, in draw order.
+    /// The triangle of the item's mesh, from 0, in the order of the polygons.
     pub triangle: u32,
     /// The barycentric coordinates of the point in the triangle, in space.
     pub weights: DVec3,
@@ -98,6 +112,8 @@ pub enum Part {
     Cut,
     /// The difference between the selected blending method and exact blending.
     Blending,
+    /// The difference between the drawn pixel and the pixel of the enlarged picture.
+    Enlarged,
     /// The interpolated light of the corners, summed over all lights.
     Corners,
 }
@@ -117,6 +133,7 @@ impl Part {
             Self::Emission => "emission",
             Self::Cut => "clamped to 255",
             Self::Blending => "blending method",
+            Self::Enlarged => "mean with neighbours",
             Self::Corners => "light of the corners",
         }
     }
