@@ -47,7 +47,7 @@ pub(crate) struct Arguments {
         ("software", Shell::Software),
     ]))]
     pub(crate) shell: Option<Shell>,
-    /// The accuracy preset to start with: draft, default, exact, ancestor-a, ancestor-b
+    /// The accuracy preset to start with: draft, default, exact, ideal, ancestor-a, ancestor-b
     #[cfg(feature = "desktop")]
     #[arg(long, hide_possible_values = true, value_name = "CHOICE", value_parser = preset)]
     pub(crate) preset: Option<&'static AccuracyPreset>,

@@ -43,7 +43,7 @@ Examples:
   marraztu lab --suite --out suite
   marraztu lab --shading vertex --pixel 215,430")]
 pub(crate) struct Lab {
-    /// Models (.obj), and at most one scene (.marraztu) to add them to
+    /// Models (.obj, .stl, also .gz), and at most one scene (.marraztu) to add them to
     pub(crate) files: Vec<PathBuf>,
 
     /// The folder for tables, plots and pictures; created if it does not exist
@@ -56,9 +56,8 @@ pub(crate) struct Lab {
     /// Width and height in pixels; one number for a square [default: 800x800; suite: 1280x720]
     #[arg(long, value_name = "WxH", allow_negative_numbers = true, value_parser = size)]
     size: Option<Size>,
-    /// Measure the suite, with a scene for each axis, or one of its scenes: pixels, vertices,
-    /// highlights, textures, edges, far, depth, first; at most 10 minutes at 1280x720
-    #[arg(long, value_name = "SCENE", num_args = 0..=1, require_equals = true)]
+    /// The scene of the suite to measure, or all of them.
+    #[arg(long, value_name = "SCENE", num_args = 0..=1, require_equals = true, help = suite_help())]
     #[arg(default_missing_value = "all", value_parser = suite_words(), hide_possible_values = true)]
     #[arg(conflicts_with_all = ["files", "quick", "axes", "max_error", "budget_ms", "pixel"])]
     #[arg(conflicts_with_all = ["measure", "inside", "Reading", "Surfaces", "Seeing", "Accuracy"])]
@@ -328,6 +327,16 @@ fn write_page(
 
 fn axis_words() -> PossibleValuesParser {
     PossibleValuesParser::new(AXES.iter().map(|axis| axis.key))
+}
+
+/// Returns the help of `--suite`, which lists its scenes.
+fn suite_help() -> String {
+    let scenes: Vec<&str> = SUITE.iter().map(|scene| scene.word).collect();
+    format!(
+        "Measure the suite, with a scene for each axis, or one of its scenes: {}; at most 10 \
+         minutes at 1280x720",
+        scenes.join(", ")
+    )
 }
 
 fn suite_words() -> PossibleValuesParser {

@@ -14,6 +14,7 @@ use marraztu_core::base::math::Axis;
 use marraztu_core::edit::{lights, motion};
 use marraztu_core::scene::{Observer, Projection, Scene, View};
 use marraztu_io as io;
+use marraztu_lab::suite::SUITE;
 use marraztu_render::Renderer;
 use marraztu_render::plan_frame;
 use tempfile::TempDir;
@@ -69,8 +70,12 @@ fn first_scene(settings: &Settings, size: Size) -> Picture {
 fn help_lists_the_commands_and_version_names_the_version() {
     let folder = folder();
     let (out, _) = ends_with(0, folder.path(), &["--help"]);
-    for word in ["render", "info", "Examples:", "Exit status:", ".marraztu"] {
+    for word in ["render", "info", "Examples:", "Exit status:", ".marraztu", "exact, ideal,"] {
         assert!(out.contains(word), "{word}");
+    }
+    let (out, _) = ends_with(0, folder.path(), &["lab", "--help"]);
+    for scene in SUITE {
+        assert!(out.contains(&format!(" {}", scene.word)), "{}", scene.word);
     }
     let (out, _) = ends_with(0, folder.path(), &["render", "--help"]);
     let options = [

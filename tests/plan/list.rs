@@ -1,8 +1,7 @@
 //! The list of a frame's effects agrees with the frame.
 
 use glam::{DMat4, DQuat, DVec3};
-use marraztu_core::accuracy::Settings;
-use marraztu_core::accuracy::Shot;
+use marraztu_core::accuracy::{LightAt, Settings, Shot};
 use marraztu_core::base::image::Size;
 use marraztu_core::edit::items;
 use marraztu_core::scene::{Command, Fill, Item, ItemId, LightKind, Scene, Tracked, View};
@@ -10,7 +9,7 @@ use marraztu_io as io;
 use marraztu_lab::cost;
 use marraztu_render::explain_frame;
 use marraztu_render::plan_frame;
-use marraztu_render::{Effect, Renderer};
+use marraztu_render::{Effect, EffectUse, Renderer};
 
 use crate::random_scenes::random_scene;
 
@@ -124,6 +123,24 @@ fn a_light_that_reaches_one_object_of_three_is_on_there_and_nowhere_else() {
     let reasons: Vec<&str> =
         of_spot.iter().filter(|one| !one.state.is_on()).map(|one| one.state.why()).collect();
     assert!(reasons.contains(&"nothing is within its cone"), "{of_spot:?}");
+}
+
+#[test]
+fn maps_of_ns_need_light_at_pixels() {
+    let opened =
+        io::open("assets/effects/everything.marraztu".as_ref(), &io::Progress::new()).unwrap();
+    for (light, why) in [
+        (LightAt::Pixel, "map_Ks, map_Ns"),
+        (LightAt::Vertex, "map_Ks; map_Ns needs light at pixels"),
+        (LightAt::Face, "map_Ks; map_Ns needs light at pixels"),
+    ] {
+        let settings = Settings { light, ..opened.settings };
+        let shot = Shot::new(&opened.scene, &opened.view, &settings, SIZE);
+        let uses = explain_frame(&shot).1;
+        let is_on = |one: &&EffectUse| one.effect == Effect::Maps && one.state.is_on();
+        let maps = uses.iter().find(is_on).unwrap();
+        assert_eq!(maps.state.why(), why, "{light:?}");
+    }
 }
 
 #[test]

@@ -278,7 +278,12 @@ fn maps(it: &Facts<'_>) -> EffectState {
     let on = rows.iter().filter(|(_, is)| it.shaded.iter().any(|shaded| is(shaded)));
     let on: Vec<&str> = on.map(|(name, _)| *name).collect();
     if !on.is_empty() {
-        return EffectState::On(on.join(", ").into());
+        let mut on = on.join(", ");
+        let is_coarse = matches!(it.settings.light, LightAt::Face | LightAt::Vertex);
+        if is_coarse && names(it, &[MapKind::Exponent]) {
+            on += "; map_Ns needs light at pixels";
+        }
+        return EffectState::On(on.into());
     }
     let named = names(it, &[MapKind::Ambient, MapKind::Specular, MapKind::Exponent]);
     EffectState::left_out(match it.settings.light {
