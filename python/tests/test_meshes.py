@@ -133,6 +133,7 @@ def test_normals_and_creases_change_the_shading():
         (np.eye(3), [[0, 1, -1]], {}, "refers to vertex -1"),
         (np.eye(3), [[0, 1]], {}, "fewer than 3 corners"),
         (np.eye(3), [[0, 1, 2], [0, 1]], {}, "face 1 has fewer than 3 corners"),
+        (np.eye(3), [[0, 1, 2], []], {}, "face 1 has fewer than 3 corners"),
         (np.eye(3), [[0.0, 1.0, 2.0]], {}, "faces are numbers of vertices"),
         (np.eye(3) * np.nan, [[0, 1, 2]], {}, "not finite"),
         (np.eye(3), [[0, 1, 2]], {"uv": [[0, 0]]}, r"uv needs the shape \(3, 2\)"),

@@ -48,6 +48,17 @@ def test_nodes_are_hidden_removed_and_renamed(quad):
     assert (scene.render(16, 16).color == background).all()
 
 
+def test_the_material_of_the_mesh_comes_back(quad):
+    scene = mz.Scene([quad])
+    node = scene.nodes[0]
+    before = scene.render(32, 32).color
+    for own in ("file", None):
+        node.set_material("gold")
+        assert not np.array_equal(scene.render(32, 32).color, before)
+        node.set_material(own)
+        assert np.array_equal(scene.render(32, 32).color, before)
+
+
 def test_a_failed_change_changes_nothing(quad):
     scene = mz.Scene([quad])
     node = scene.nodes[0]
@@ -235,8 +246,10 @@ def test_principal_points_beside_the_centre_are_rejected(quad):
     with pytest.raises(ValueError, match="pixel_center=0"):
         scene.render(64, 48, camera=mz.Camera(K))
     assert scene.render(64, 48, camera=mz.Camera(K, pixel_center=0)).width == 64
-    with pytest.raises(ValueError, match="a rotation and a position"):
-        scene.render(64, 48, camera=mz.Camera(yfov=1, pose=np.diag([2, 2, 2, 1])))
+    for_rows = mz.Camera.look_at((3, 2, 5), (0, 0, 0)).pose().T
+    for pose in (np.diag([2, 2, 2, 1]), np.diag([1, 1, 1, 2]), for_rows):
+        with pytest.raises(ValueError, match="a rotation and a position"):
+            scene.render(64, 48, camera=mz.Camera(yfov=1, pose=pose))
     with pytest.raises(ValueError, match="not parallel to up"):
         mz.Camera.look_at((0, 1, 0), (0, 0, 0))
 

@@ -227,7 +227,8 @@ def _polygons(faces: Any, count: int) -> tuple[Any, Any]:
         # Lists of different lengths are not an array.
         array = None
     if array is None or array.dtype == object:
-        lists = [np.asarray(face) for face in faces]
+        # An empty list would be an array of floats.
+        lists = [np.asarray(face) if len(face) else np.empty(0, np.int64) for face in faces]
         arities = np.array([len(face) for face in lists], np.uint32)
         array = np.concatenate(lists) if lists else np.empty(0, np.int64)
     elif array.size == 0:

@@ -93,9 +93,9 @@ class Node:
         self._change("opacity", opacity)
         self._opacity = opacity
 
-    def set_material(self, material: Material | str) -> None:
-        """Replaces the material; "file" restores those of the mesh. Textures stay."""
-        self._change("material", material_of(material))
+    def set_material(self, material: Material | str | None) -> None:
+        """Replaces the material; "file" or None restores those of the mesh. Textures stay."""
+        self._change("material", "file" if material is None else material_of(material))
 
     def set_sides(self, sides: str) -> None:
         """Draws "one" or "two" sides of faces, or two sides of open surfaces alone ("auto")."""
