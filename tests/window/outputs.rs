@@ -3,11 +3,11 @@
 //! Catches: options that differ from the saved file, a file left behind by a cancelled export, a
 //! window that blocks.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use egui::accesskit::Role;
+use egui::accesskit::{Role, Toggled};
 use egui::{Key, Modifiers, ViewportCommand, ViewportId};
-use egui_kittest::kittest::NodeT as _;
+use egui_kittest::kittest::{NodeT as _, Queryable as _};
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::Shifted;
 use marraztu_core::accuracy::{Samples, Settings, Shot};
@@ -18,6 +18,7 @@ use marraztu_render::{Renderer, plan_frame, without_ground};
 use crate::editor::Editor;
 use crate::helpers::texts;
 use crate::panels::{click, control};
+use crate::properties::type_into;
 
 fn says(editor: &Editor, text: &str) -> bool {
     editor.state().message.as_ref().is_some_and(|message| message.text.contains(text))
@@ -59,6 +60,41 @@ fn a_picture_with_overlays_is_of_a_frame_without_the_dialog() {
         }
     }
     panic!("no picture was requested");
+}
+
+#[test]
+fn overlays_turn_off_the_options_that_a_picture_of_the_window_lacks() {
+    let mut editor = Editor::of_size(900.0, 500.0);
+    let Size { width, height } = editor.state().statistics.size;
+    editor.press(Shifted(Key::F12));
+    click(&mut editor, Role::CheckBox, "Transparent background");
+    type_into(&mut editor, "Times", "2");
+    assert!(editor.shows(&format!("{} x {} pixels", 2 * width, 2 * height)));
+    click(&mut editor, Role::CheckBox, "Overlays");
+    assert!(editor.shows(&format!("{width} x {height} pixels")));
+    let transparent = control(&editor, Role::CheckBox, "Transparent background");
+    assert_eq!(transparent.accesskit_node().toggled(), Some(Toggled::False));
+    editor.harness.get_by_role_and_label(Role::TextInput, "File").focus();
+    editor.settle();
+    editor.type_path(Path::new("picture.jpg"));
+    assert!(!editor.shows("JPEG has no transparent pixels"));
+}
+
+#[test]
+fn a_turntable_of_numbered_pictures_is_a_folder() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut editor = Editor::of_size(900.0, 600.0);
+    editor.perform(Action::SaveTurntable);
+    type_into(&mut editor, "Pictures", "3");
+    click(&mut editor, Role::CheckBox, "Numbered files");
+    editor.click_label("Browse...");
+    // The browser adds an extension.
+    editor.type_path(&folder.path().join("frames"));
+    editor.wait_until(|editor| says(editor, "Saved"));
+    let names = std::fs::read_dir(folder.path().join("frames")).unwrap();
+    let mut names: Vec<_> = names.map(|entry| entry.unwrap().file_name()).collect();
+    names.sort();
+    assert_eq!(names, ["frame-001.png", "frame-002.png", "frame-003.png"]);
 }
 
 #[test]

@@ -45,6 +45,8 @@ pub(crate) struct PictureChoices {
     pub(crate) frames: u32,
     pub(crate) seconds: f64,
     pub(crate) turn: Turn,
+    /// Whether a turntable becomes a folder of numbered pictures.
+    pub(crate) numbered: bool,
 }
 
 impl PictureChoices {
@@ -60,7 +62,14 @@ impl PictureChoices {
             frames: 60,
             seconds: 4.0,
             turn: Turn::Objects,
+            numbered: false,
         }
+    }
+
+    /// Returns the file to write for a chosen path; for numbered pictures, the folder, which has no
+    /// extension.
+    pub(crate) fn target(&self, path: PathBuf) -> PathBuf {
+        if self.numbered { path.with_extension("") } else { path }
     }
 
     /// Returns the size of the picture.
@@ -73,6 +82,8 @@ impl PictureChoices {
 #[derive(Debug)]
 pub(crate) struct PictureDialog {
     choices: PictureChoices,
+    /// The size of the window's picture, which a picture with overlays has.
+    window: Size,
     /// The folder of the last file.
     folder: PathBuf,
     /// The text of the file field.
@@ -88,7 +99,7 @@ impl PictureDialog {
             n => format!("{stem} {n}.{ending}"),
         };
         let file = (1..).map(named).find(|name| !folder.join(name).exists()).unwrap_or_default();
-        Self { choices, folder, file }
+        Self { choices, window: choices.size, folder, file }
     }
 
     /// Shows the dialog. Returns the result when it has ended.
@@ -118,9 +129,11 @@ impl PictureDialog {
             ui.label("");
             let choices = &mut self.choices;
             ui.add_enabled_ui(!choices.overlays, |ui| {
+                // The window is opaque.
+                let is_on = choices.transparent && !choices.overlays;
                 let ground = Switch {
                     enabled: !choices.overlays,
-                    ..Switch::new("Transparent background", choices.transparent)
+                    ..Switch::new("Transparent background", is_on)
                 };
                 let hint = "Omits the background; needs an alpha channel: PNG, APNG or WebP";
                 choices.transparent ^= ground.ui(ui).on_hover_text(hint).clicked();
@@ -135,12 +148,7 @@ impl PictureDialog {
             entered = file.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter));
             ui.end_row();
         });
-        let Size { width, height } = self.choices.whole();
-        let what = match is_picture {
-            true => format!("{width} x {height} pixels"),
-            false => format!("{} pictures of {width} x {height} pixels", self.choices.frames),
-        };
-        let said = egui::RichText::new(format!("{what}, in {}", self.folder.display())).weak();
+        let said = egui::RichText::new(self.summary()).weak();
         ui.add(egui::Label::new(said).truncate());
         ui.add_space(6.0);
         let mut end = None;
@@ -163,12 +171,28 @@ impl PictureDialog {
         end
     }
 
-    /// Returns the path from the file field, with an extension.
+    /// Describes the result: "300 x 200 pixels, in /home/me".
+    fn summary(&self) -> String {
+        let PictureChoices { purpose, overlays, frames, numbered, .. } = self.choices;
+        let Size { width, height } = if overlays { self.window } else { self.choices.whole() };
+        let pixels = format!("{width} x {height} pixels");
+        match purpose {
+            Purpose::Picture => format!("{pixels}, in {}", self.folder.display()),
+            Purpose::Turntable => {
+                let path = self.path();
+                let folder = if numbered { &path } else { &self.folder };
+                format!("{frames} pictures of {pixels}, in {}", folder.display())
+            }
+        }
+    }
+
+    /// Returns the path from the file field, with an extension unless it is a folder.
     fn path(&self) -> PathBuf {
         let (stem, ending) = self.choices.purpose.file();
         let name = if self.file.trim().is_empty() { stem } else { self.file.trim() };
         let path = self.folder.join(name);
-        if path.extension().is_some() { path } else { path.with_extension(ending) }
+        let has_ending = path.extension().is_some();
+        self.choices.target(if has_ending { path } else { path.with_extension(ending) })
     }
 
     fn size_ui(&mut self, ui: &mut Ui) {
@@ -194,7 +218,13 @@ impl PictureDialog {
     fn turn_ui(&mut self, ui: &mut Ui) {
         let choices = &mut self.choices;
         ui.label("Pictures");
-        ui.add(DragValue::new(&mut choices.frames).range(2..=3600)).accessible_name("Pictures");
+        ui.horizontal(|ui| {
+            let frames = DragValue::new(&mut choices.frames).range(2..=3600);
+            ui.add(frames).accessible_name("Pictures");
+            let numbered = Switch::new("Numbered files", choices.numbered).ui(ui);
+            let hint = "Saves a folder of PNG files instead of an animation";
+            choices.numbered ^= numbered.on_hover_text(hint).clicked();
+        });
         ui.end_row();
         ui.label("Seconds per turn");
         let seconds = DragValue::new(&mut choices.seconds).range(0.1..=600.0).speed(0.1);

@@ -111,9 +111,10 @@ impl App {
     /// Begins to make the picture or the turntable with the chosen options.
     pub(crate) fn make_picture(&mut self, ctx: &Context, path: PathBuf) {
         let Some(choices) = self.making.choices.take() else { return };
+        let path = choices.target(path);
         let sources = self.state.sources();
         let may_save = sources.spare(&path).and_then(|()| match choices.purpose {
-            Purpose::Picture if choices.transparent => io::check_alpha(&path),
+            Purpose::Picture if choices.transparent && !choices.overlays => io::check_alpha(&path),
             _ => Ok(()),
         });
         if let Err(error) = may_save {
@@ -182,6 +183,10 @@ impl App {
                     }
                 }
                 Made::Cancelled => self.state.tell(Some("Cancelled: no file was written".into())),
+                Made::Partial(folder) => {
+                    let folder = file_name(&folder);
+                    self.state.tell(Some(format!("Cancelled: {folder} has the pictures so far")));
+                }
                 Made::Failed(why) => self.dialogs.tell_fault(format!("{why}.")),
             }
         }

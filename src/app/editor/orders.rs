@@ -34,6 +34,8 @@ pub(crate) enum Made {
     /// The file was written; with notes about it.
     Done(PathBuf, Vec<String>),
     Cancelled,
+    /// It was cancelled after some of the numbered pictures in this folder.
+    Partial(PathBuf),
     /// The reason, as a sentence.
     Failed(String),
 }
@@ -73,6 +75,7 @@ impl Order {
         };
         match made {
             Ok(Some(notes)) => Made::Done(self.path.clone(), notes),
+            Ok(None) if self.path.is_dir() => Made::Partial(self.path.clone()),
             Ok(None) => Made::Cancelled,
             Err(why) => Made::Failed(why),
         }

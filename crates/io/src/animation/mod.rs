@@ -47,8 +47,8 @@ impl AnimationFormat {
         match ending.to_string_lossy().to_lowercase().as_str() {
             "gif" => Ok(Self::Gif),
             "png" | "apng" => Ok(Self::Apng),
-            _ => Err("its name has to end in .gif or .png (animated), or have no ending for a \
-                folder of numbered pictures"
+            _ => Err("its name has to end in .gif or .png (animated); the folder of numbered \
+                pictures has no ending"
                 .to_owned()),
         }
     }
