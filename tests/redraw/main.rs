@@ -510,6 +510,50 @@ fn a_moved_object_takes_the_tiles_of_its_old_and_its_new_place_and_no_others() {
     assert_eq!(*changes.cause(), DamageCause::Items(moved));
 }
 
+/// A closed box from -1 to 1 with its lid, at z = 1, as the second part.
+fn box_with_lid() -> Shared<Model> {
+    let mesh = &cube().mesh;
+    let corners = mesh.corners().iter().map(|corner| SourceCorner::bare(corner.position));
+    let part = |name: &str| Part { name: name.to_owned(), material: None };
+    model_of(
+        "box",
+        MeshSource {
+            positions: mesh.positions().to_vec(),
+            polygon_parts: vec![0, 1, 0, 0, 0, 0],
+            parts: vec![part("walls"), part("lid")],
+            ..MeshSource::of_polygons(corners, vec![4; 6])
+        },
+    )
+}
+
+#[test]
+fn a_box_shows_its_inside_while_its_lid_is_hidden() {
+    let (mut scene, view) = scene(&[(box_with_lid(), at(30.0, 0.0, 0.0, 0.0))]);
+    let view = View { marks: false, ..view };
+    let size = Size::new(300, 300);
+    let plan = |scene: &Scene| plan_frame(&Shot::new(scene, &view, &Settings::default(), size));
+    edit(&mut scene, ObjectId(10), |object| object.sides = Sides::Auto);
+    let mut renderer = Renderer::default();
+    renderer.render(&plan(&scene));
+    let ground = scene.background.opaque();
+    for hidden in [Some(1), None, Some(0), None] {
+        edit(&mut scene, ObjectId(10), |object| {
+            object.hidden_parts = hidden.into_iter().collect();
+        });
+        agrees(&mut renderer, &plan(&scene));
+        let middle = renderer.picture().pixel(150, 150);
+        assert!(middle != ground, "without part {hidden:?}");
+    }
+    // The lid alone is visible from behind.
+    edit(&mut scene, ObjectId(10), |object| {
+        object.hidden_parts = [0].into();
+        let turned = DMat4::from_rotation_y(std::f64::consts::PI) * *object.placement.now();
+        object.placement = object.placement.replaced(turned);
+    });
+    agrees(&mut renderer, &plan(&scene));
+    assert!(renderer.picture().pixel(150, 150) != ground);
+}
+
 #[test]
 fn an_invisible_change_paints_no_tile() {
     let (mut scene, view) = scene(&[(square(), at(20.0, 0.0, 0.0, 0.0))]);

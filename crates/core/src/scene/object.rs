@@ -65,7 +65,7 @@ pub enum Sides {
     One,
     /// Both sides; a back face is lit with its normal flipped.
     Two,
-    /// Both sides of an open surface, the front side of a closed one.
+    /// Both sides of an open surface, the front side of a closed one. Only shown parts count.
     #[default]
     Auto,
 }
@@ -134,7 +134,10 @@ impl Object {
         match self.sides {
             Sides::One => false,
             Sides::Two => true,
-            Sides::Auto => !self.model.mesh.is_closed(),
+            Sides::Auto => match self.shows_all_parts() {
+                true => !self.model.mesh.is_closed(),
+                false => !self.model.mesh.is_closed_without(self.hidden_parts.iter().copied()),
+            },
         }
     }
 
@@ -209,6 +212,12 @@ impl Object {
     /// hidden parts belong to the missing file.
     pub fn shows_part(&self, part: u32) -> bool {
         self.model.is_placeholder() || !self.hidden_parts.contains(&part)
+    }
+
+    /// Returns the parts of the model that are drawn.
+    pub fn shown_parts(&self) -> impl Iterator<Item = u32> {
+        let parts = 0..u32::try_from(self.model.mesh.parts().len()).unwrap_or(u32::MAX);
+        parts.filter(|part| self.shows_part(*part))
     }
 
     /// Returns the coefficients, opacity and texture of one of the model's parts.

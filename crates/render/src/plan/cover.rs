@@ -48,10 +48,8 @@ impl Cover {
 
     /// Returns whether a visible part of an object is transparent.
     pub(super) fn is_any_transparent(object: &Object, transparency: Transparency) -> bool {
-        let mesh = &object.model.mesh;
-        let parts = u32::try_from(mesh.parts().len()).unwrap_or(u32::MAX);
-        let textured = !mesh.uvs().is_empty();
-        (0..parts).filter(|part| object.shows_part(*part)).any(|part| {
+        let textured = !object.model.mesh.uvs().is_empty();
+        object.shown_parts().any(|part| {
             let cover = Self::of(&object.part_look(part), textured, transparency);
             matches!(cover, Self::Transparent(_))
         })

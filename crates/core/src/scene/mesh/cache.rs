@@ -9,7 +9,7 @@ use prefetch_index::prefetch_index;
 use rayon::prelude::*;
 
 use super::accelerator::AnyAccelerator;
-use super::closed::is_closed;
+use super::closed::boundaries;
 use super::tangents::CornerTangents;
 use crate::base::math::each;
 use crate::base::once::get_or_compute;
@@ -74,7 +74,7 @@ pub(crate) struct FoundOfShape {
     facets: OnceLock<Vec<Facet>>,
     edges: OnceLock<Edges>,
     pub(super) edge_order: AnyAccelerator,
-    closed: OnceLock<bool>,
+    boundaries: OnceLock<Vec<u64>>,
     pub(super) bvh: AnyAccelerator,
 }
 
@@ -234,7 +234,17 @@ impl Mesh {
     /// Returns whether the polygons form closed surfaces: every edge is traversed as often in one
     /// direction as in the other.
     pub fn is_closed(&self) -> bool {
-        *get_or_compute(&self.shape.found.closed, || is_closed(&self.outlines()))
+        self.is_closed_without([])
+    }
+
+    /// Returns whether the polygons form closed surfaces after these parts are removed.
+    pub fn is_closed_without(&self, parts: impl IntoIterator<Item = u32>) -> bool {
+        let all = get_or_compute::<Vec<_>>(&self.shape.found.boundaries, || {
+            boundaries(&self.outlines(), self.polygon_parts(), self.parts().len())
+        });
+        let removed = parts.into_iter().filter_map(|part| all.get(part as usize).copied());
+        let sum = all.iter().copied().fold(0, u64::wrapping_add);
+        removed.fold(sum, u64::wrapping_sub) == 0
     }
 
     /// Returns the edges of the mesh: the sides of all polygons, each listed once.

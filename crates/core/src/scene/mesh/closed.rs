@@ -1,4 +1,4 @@
-//! Decides whether a mesh is a closed surface.
+//! Decides whether a mesh, or some of its parts, is a closed surface.
 //!
 //! A closed surface traverses each of its edges as often in one direction as in the other.
 //! Therefore the sum over all sides (p, q) of polygons
@@ -9,7 +9,10 @@
 //!
 //! is 0 for any such h. If h is a hash of 64 bits, S of an open surface is 0 with a probability of
 //! 2^-64. This takes one pass and no table of edges. Corners are compared by position, so a surface
-//! that a file splits at seams still counts as closed.
+//! that a file splits at seams still counts as closed. Each part has its own sum, and S of several
+//! parts is the sum of theirs.
+
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use rayon::prelude::*;
 
@@ -18,14 +21,25 @@ use crate::scene::mesh::outlines::Outlines;
 /// The number of polygons that a thread takes at a time.
 const SHARE: usize = 4096;
 
-/// Returns whether the polygons form closed surfaces, each with one side outside. If the
-/// orientation of a polygon differs from its neighbour's, their edge is traversed twice in one
-/// direction, so the surface is open.
-pub(crate) fn is_closed(outlines: &Outlines<'_>) -> bool {
+/// Returns S of each of `parts` parts. Parts with a total of 0 form closed surfaces, each with one
+/// side outside. If the orientation of a polygon differs from its neighbour's, their edge is
+/// traversed twice in one direction, so the surface is open.
+pub(super) fn boundaries(outlines: &Outlines<'_>, polygon_parts: &[u32], parts: usize) -> Vec<u64> {
     let keys: Vec<u64> = outlines.places.par_iter().map(|place| key(*place)).collect();
-    let polygons = (0..outlines.starts.len() - 1).into_par_iter().with_min_len(SHARE);
-    let sum = polygons.map(|polygon| boundary(outlines.vertices(polygon), &keys));
-    sum.reduce(|| 0, u64::wrapping_add) == 0
+    let sums: Vec<AtomicU64> = (0..parts).map(|_| AtomicU64::new(0)).collect();
+    polygon_parts.par_chunks(SHARE).enumerate().for_each(|(share, parts)| {
+        let mut polygon = share * SHARE;
+        // Files list the polygons of a part together, so each run is added at once.
+        for run in parts.chunk_by(|a, b| a == b) {
+            let own = polygon..polygon + run.len();
+            polygon = own.end;
+            let sum = own.fold(0, |sum: u64, polygon| {
+                sum.wrapping_add(boundary(outlines.vertices(polygon), &keys))
+            });
+            sums[run[0] as usize].fetch_add(sum, Ordering::Relaxed);
+        }
+    });
+    sums.into_iter().map(AtomicU64::into_inner).collect()
 }
 
 /// Returns the sum of the hashes of a polygon's sides.
@@ -63,7 +77,7 @@ const fn mixed(x: u64) -> u64 {
 
 #[cfg(test)]
 mod tests {
-    use crate::scene::{Mesh, MeshSource, SourceCorner};
+    use crate::scene::{Mesh, MeshSource, Part, SourceCorner};
 
     /// The faces of a cube from -1 to 1, seen from outside.
     const CUBE: [[u32; 4]; 6] =
@@ -103,6 +117,30 @@ mod tests {
         let mut faces = CUBE;
         faces[3].reverse();
         assert!(!cube(&faces).is_closed());
+    }
+
+    #[test]
+    fn parts_are_closed_by_their_own_polygons() {
+        // A cube, its walls and its lid as separate parts, and a sheet beside it.
+        let of_cube = CUBE.iter().flatten().copied();
+        let corners = of_cube.chain([8, 9, 10, 11]).map(SourceCorner::bare);
+        let side = |i: u16| [5.0 + f32::from(i & 1), f32::from(i >> 1), 0.0];
+        let positions = (0..8).map(corner_of_cube).chain([0, 1, 3, 2].map(side)).collect();
+        let part = Part { name: String::new(), material: None };
+        let mesh = Mesh::new(MeshSource {
+            positions,
+            polygon_parts: vec![0, 2, 0, 0, 0, 0, 1],
+            parts: vec![part; 3],
+            ..MeshSource::of_polygons(corners, vec![4; 7])
+        })
+        .unwrap();
+        assert!(!mesh.is_closed());
+        let closed = [&[1_u32][..], &[0, 1, 2]];
+        for hidden in [&[0_u32][..], &[1], &[2], &[0, 1], &[0, 2], &[1, 2], &[0, 1, 2]] {
+            let expected = closed.contains(&hidden);
+            let without = mesh.is_closed_without(hidden.iter().copied());
+            assert_eq!(without, expected, "without {hidden:?}");
+        }
     }
 
     #[test]
