@@ -14,7 +14,7 @@ use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::edit::items;
 use marraztu_core::edit::turntable::{Turn, turned};
 use marraztu_core::scene::{
-    Command, LoadOptions, MaterialChoice, Mesh, Object, Scene, Sides, View,
+    Command, LoadOptions, MaterialChoice, Mesh, Object, PolygonMode, Scene, Sides, View,
 };
 use marraztu_io::{self as io, Progress, Sources};
 use marraztu_render::{Renderer, plan_frame, without_ground};
@@ -53,6 +53,20 @@ fn a_whole_turn_comes_back_and_the_first_picture_is_the_picture() {
         for ((_, a), (_, b)) in half.objects.iter().zip(scene.objects.iter()) {
             assert!(a.placement.now().abs_diff_eq(*b.placement.now(), 1e-9));
         }
+    }
+}
+
+#[test]
+fn objects_that_are_not_drawn_do_not_move_the_axis_of_a_turntable() {
+    let (scene, view) = io::default_scene();
+    let id = view.object.unwrap();
+    let centre = |scene: &Scene| scene.objects.get(id).unwrap().bounding_sphere(0.0).unwrap().0;
+    let alone = View { only_selected: true, ..view.clone() };
+    let polygons = View { polygons: Some(PolygonMode::begin()), ..view.clone() };
+    for (view, stays) in [(alone, true), (polygons, true), (view, false)] {
+        let turned = turned(&scene, &view, Turn::Objects, 0.25).unwrap();
+        let by = centre(&turned) - centre(&scene);
+        assert_eq!(by.length() < 1e-9, stays, "{by}");
     }
 }
 

@@ -116,9 +116,8 @@ fn left_out(shot: &Shot) -> BTreeMap<ItemId, Cow<'static, str>> {
 /// Returns whether the user expects to see an object.
 fn is_wanted(view: &View, id: ObjectId, object: &Object) -> bool {
     let parts = object.model.mesh.parts().len();
-    object.visible
+    view.shows(id, object)
         && view.polygons.is_none()
-        && (!view.only_selected || view.object == Some(id))
         && (parts == 0 || object.model.is_placeholder() || object.hidden_parts.len() < parts)
 }
 

@@ -172,9 +172,8 @@ pub(super) fn placeholders_ui(ui: &Ui, state: &State, onto: &Projection) {
     }
     let painter = ui.painter().with_clip_rect(onto.rect());
     for (id, object) in state.scene.objects.iter() {
-        let is_shown = object.visible && (!view.only_selected || view.object == Some(id));
         let file = object.model.source.as_deref().filter(|_| object.model.is_placeholder());
-        if let (true, Some(file)) = (is_shown, file)
+        if let (true, Some(file)) = (view.shows(id, object), file)
             && let Some(at) = onto.place(object.centre(view.time))
             && onto.rect().contains(at)
         {

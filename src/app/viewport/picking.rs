@@ -65,12 +65,9 @@ pub(crate) fn objects_within(state: &State, onto: &Projection, area: Rect) -> Ve
     drawn(state).filter(|(_, object)| touches(object)).map(|(id, _)| id).collect()
 }
 
-/// Lists the objects that the view shows: the visible ones, or of these the selected one alone.
+/// Lists the objects that the view shows.
 fn drawn(state: &State) -> impl Iterator<Item = (ObjectId, &Object)> {
-    let view = &state.view;
-    let alone = view.only_selected || view.polygons.is_some();
-    let is_drawn = move |id| !alone || view.object == Some(id);
-    state.scene.objects.iter().filter(move |(id, object)| object.visible && is_drawn(*id))
+    state.scene.objects.iter().filter(|(id, object)| state.view.shows(*id, object))
 }
 
 /// Finds the depth of the nearest triangle at a point. Triangles that cross the near plane are

@@ -81,12 +81,10 @@ pub fn all(scene: &Scene, view: &View) -> Change {
     objects(scene, view, &shown(scene, view))
 }
 
-/// Returns the visible objects.
-fn shown(scene: &Scene, view: &View) -> Vec<ObjectId> {
-    let shown = |id: &ObjectId, object: &Object| {
-        object.visible && (!view.only_selected || view.object == Some(*id))
-    };
-    scene.objects.iter().filter(|(id, object)| shown(id, object)).map(|(id, _)| id).collect()
+/// Returns the objects that the view shows.
+pub(super) fn shown(scene: &Scene, view: &View) -> Vec<ObjectId> {
+    let shown = scene.objects.iter().filter(|(id, object)| view.shows(*id, object));
+    shown.map(|(id, _)| id).collect()
 }
 
 /// Frames these objects.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Refusal, framing, items};
 use crate::base::math;
-use crate::scene::{Command, Item, ObjectId, Observer, Pose, Scene, Tracked, View};
+use crate::scene::{Command, Item, Observer, Pose, Scene, Tracked, View};
 
 /// The part of the scene that turns.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -29,9 +29,8 @@ pub fn turned(scene: &Scene, view: &View, turn: Turn, part: f64) -> Result<Scene
     if turn == Turn::Camera && view.observer == Observer::Object && view.object.is_some() {
         return Err(Refusal::ObjectLooks);
     }
-    let visible = scene.objects.iter().filter(|(_, object)| object.visible);
-    let ids: Vec<ObjectId> = visible.map(|(id, _)| id).collect();
-    let sphere = framing::sphere(scene, view, &ids).ok_or(Refusal::NothingToFrame)?;
+    let sphere = framing::sphere(scene, view, &framing::shown(scene, view));
+    let sphere = sphere.ok_or(Refusal::NothingToFrame)?;
     let mut turned = scene.clone();
     if part.rem_euclid(1.0) == 0.0 {
         return Ok(turned);

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use serde::{Deserialize, Serialize};
 
-use super::{CameraId, LightId, ObjectId};
+use super::{CameraId, LightId, Object, ObjectId};
 
 /// The selection and the display switches.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,6 +65,13 @@ impl View {
     /// Returns the factor that the exposure gives to all light.
     pub fn light_factor(&self) -> f64 {
         self.exposure.exp2()
+    }
+
+    /// Returns whether an object is drawn: it is visible, and selected if only the selected object
+    /// is drawn.
+    pub fn shows(&self, id: ObjectId, object: &Object) -> bool {
+        let alone = self.only_selected || self.polygons.is_some();
+        object.visible && (!alone || self.object == Some(id))
     }
 
     /// Returns the first view of a scene.

@@ -55,10 +55,9 @@ impl Planner<'_> {
 
     /// Returns the reason why the view does not show an object, if there is one.
     pub(super) fn not_asked_for(&self, id: ObjectId, object: &Object) -> Option<&'static str> {
-        let alone = self.shot.view.only_selected || self.shot.view.polygons.is_some();
         if !object.visible {
             Some("hidden")
-        } else if alone && self.shot.view.object != Some(id) {
+        } else if !self.shot.view.shows(id, object) {
             Some("only the selected object is shown")
         } else {
             None

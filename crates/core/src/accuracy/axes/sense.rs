@@ -3,15 +3,11 @@
 use glam::{DMat3, DVec3};
 
 use crate::accuracy::{Samples, Settings};
-use crate::scene::{MapKind, Object, ObjectId, Scene, Surface, View};
+use crate::scene::{MapKind, Object, Scene, Surface, View};
 
 /// The visible objects.
-fn shown<'a>(scene: &'a Scene, view: &View) -> impl Iterator<Item = &'a Object> {
-    let all = !view.only_selected && view.polygons.is_none();
-    let alone = view.object;
-    let is_shown =
-        move |(id, object): &(ObjectId, &Object)| object.visible && (all || alone == Some(*id));
-    scene.objects.iter().filter(is_shown).map(|(_, object)| object)
+fn shown<'a>(scene: &'a Scene, view: &'a View) -> impl Iterator<Item = &'a Object> {
+    scene.objects.iter().filter(|(id, object)| view.shows(*id, object)).map(|(_, object)| object)
 }
 
 /// Checks that a visible part has a property; otherwise returns the given reason.
@@ -21,10 +17,8 @@ pub(super) fn if_any(
     has: fn(&Object, u32) -> bool,
     reason: &'static str,
 ) -> Result<(), &'static str> {
-    let mut parts = shown(scene, view).flat_map(|object| {
-        let count = u32::try_from(object.model.mesh.parts().len()).unwrap_or(u32::MAX);
-        (0..count).filter(|part| object.shows_part(*part)).map(move |i| (object, i))
-    });
+    let mut parts =
+        shown(scene, view).flat_map(|object| object.shown_parts().map(move |part| (object, part)));
     if parts.any(|(object, part)| has(object, part)) { Ok(()) } else { Err(reason) }
 }
 
