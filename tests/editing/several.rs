@@ -121,3 +121,29 @@ fn bulbs_and_fixed_spots_are_pasted_next_to_their_originals_like_objects() {
     let aim = pasted.next().and_then(|spot| spot.kind.owner()).and_then(SpotOwner::fixed);
     close(aim.unwrap().now().position, DVec3::ONE + by);
 }
+
+#[test]
+fn a_piece_of_a_split_object_is_pasted_where_it_was_unless_something_shows_its_part_there() {
+    let mut desk = Desk::new(Subject::Object, Transformation::Translation);
+    let whole = ObjectId(2);
+    let place = *desk.scene.objects.get(whole).unwrap().placement.now();
+    desk.perform(items::split(&desk.scene, whole));
+    let [lower, upper] = [whole, ObjectId(9)];
+    let piece = desk.scene.objects.get(lower).unwrap().clone();
+    let copies = || Copies { objects: vec![(lower, piece.clone())], ..Copies::default() };
+    let pasted = |desk: &Desk| *desk.scene.objects.iter().next().unwrap().1.placement.now();
+    // The other piece has the same file and the same place.
+    desk.perform(items::remove(&desk.scene, ItemId::Object(lower)));
+    desk.perform(copies::insert(&desk.scene, &desk.view, copies()));
+    close_matrix(pasted(&desk), place);
+    desk.perform(copies::insert(&desk.scene, &desk.view, copies()));
+    assert!((pasted(&desk).w_axis - place.w_axis).length() > 1.0);
+    // The whole object shows the part, too.
+    for id in desk.scene.objects.ids().filter(|id| *id != upper).collect::<Vec<_>>() {
+        desk.perform(items::remove(&desk.scene, ItemId::Object(id)));
+    }
+    let all = |object: &mut Object| object.hidden_parts.clear();
+    desk.perform(items::change_object(&desk.scene, upper, all));
+    desk.perform(copies::insert(&desk.scene, &desk.view, copies()));
+    assert!((pasted(&desk).w_axis - place.w_axis).length() > 1.0);
+}

@@ -51,8 +51,9 @@ pub fn duplicate(scene: &Scene, view: &View, others: &[ItemId]) -> Change {
     })
 }
 
-/// Adds items under new ids and free names. If the place of an object is taken by an equal object,
-/// all items are moved next to it. Spots and cameras stay attached to copied objects.
+/// Adds items under new ids and free names. If another object shows the same part of the same file
+/// at the place of an object, all items are moved next to it. Spots and cameras stay attached to
+/// copied objects.
 ///
 /// # Errors
 /// If an item is invalid in the scene.
@@ -149,9 +150,11 @@ fn free_place(scene: &Scene, view: &View, objects: &[&Object]) -> DVec3 {
     let is_taken = |by: DVec3| {
         objects.iter().any(|object| {
             let place = DMat4::from_translation(by) * *object.placement.now();
+            let parts: Vec<u32> = object.shown_parts().collect();
             scene.objects.iter().any(|(_, other)| {
                 other.placement.now().abs_diff_eq(place, 1e-9 * step.length())
                     && other.model.shares_file_with(&object.model)
+                    && parts.iter().any(|part| other.shows_part(*part))
             })
         })
     };
