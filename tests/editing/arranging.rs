@@ -3,7 +3,7 @@
 //! Catches: an object above or below the ground, a vertical plane taken for the ground, an object
 //! that also moves along another axis.
 
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DVec3, EulerRot};
 use marraztu_core::base::{Shared, math::Axis};
 use marraztu_core::edit::arrange::{align, drop_to_ground, ground, reset, world_box};
 use marraztu_core::edit::{GesturePhase, Refusal, items, shapes, transform};
@@ -89,6 +89,35 @@ fn others_come_in_line_with_the_selected_object_along_one_axis_alone() {
         assert!((after.y - before.y).abs() < 1e-9 && (after.z - before.z).abs() < 1e-9);
     }
     assert_eq!(align(&scene, &view, &[], Axis::X, first), Err(Refusal::NothingToAlign));
+}
+
+#[test]
+fn objects_in_line_up_to_rounding_are_not_aligned_again() {
+    let (mut scene, mut view) = io::default_scene();
+    let ids: Vec<ObjectId> = scene.objects.ids().collect();
+    let others: Vec<ItemId> = ids.iter().copied().map(ItemId::Object).collect();
+    let place = |scene: &mut Scene, id, to: DMat4| {
+        let place = |object: &mut Object| object.placement = object.placement.replaced(to);
+        items::change_object(scene, id, place).unwrap().apply(scene).unwrap();
+    };
+    let places = [DVec3::new(3.1, 0.7, -0.3), DVec3::new(-0.117, 1e-9, 4e3)];
+    for (i, id) in ids.iter().enumerate() {
+        let turn = 0.3 + 1.1 * i as f64;
+        let turn = DMat4::from_euler(EulerRot::XYZ, turn, 0.7 * turn, -0.4 * turn);
+        place(&mut scene, *id, DMat4::from_translation(places[i % 2]) * turn);
+    }
+    let first = GesturePhase::First;
+    for id in ids {
+        view.object = Some(id);
+        // The others are not in line with it yet.
+        let now = *scene.objects.get(id).unwrap().placement.now();
+        place(&mut scene, id, DMat4::from_translation(DVec3::new(0.1, 0.2, 0.3)) * now);
+        for axis in Axis::ALL {
+            align(&scene, &view, &others, axis, first).unwrap().apply(&mut scene).unwrap();
+            let again = align(&scene, &view, &others, axis, first).err();
+            assert_eq!(again, Some(Refusal::NothingToAlign), "{id:?} {axis:?}");
+        }
+    }
 }
 
 #[test]

@@ -30,7 +30,7 @@ pub fn drop_to_ground(scene: &Scene, view: &View, phase: GesturePhase) -> Change
     let (id, object) = set_transform::selected_object(scene, view)?;
     let bounds = world_box(object, view.time).ok_or(Refusal::NoPolygons)?;
     let by = ground(scene, id) - bounds.min.y;
-    if by.abs() <= 1e-12 * bounds.max.abs().max(bounds.min.abs()).max_element() {
+    if by.abs() <= rounding(&bounds) {
         return Err(Refusal::OnGround);
     }
     moved(scene, view, id, DVec3::Y * by, phase)
@@ -61,21 +61,27 @@ pub fn align(
     phase: GesturePhase,
 ) -> Change {
     let (_, object) = set_transform::selected_object(scene, view)?;
-    let middle = |object: &Object| Some(world_box(object, view.time)?.centre()[axis.index()]);
-    let to = middle(object).ok_or(Refusal::NoPolygons)?;
+    let to = world_box(object, view.time).ok_or(Refusal::NoPolygons)?;
     let (mut commands, mut refused) = (Vec::new(), Refusal::NothingToAlign);
     for other in others {
         let ItemId::Object(id) = *other else { continue };
-        let from = scene.objects.get(id).and_then(middle);
-        let Some(by) = from.map(|from| to - from).filter(|by| *by != 0.0) else {
+        let object = scene.objects.get(id);
+        let Some(from) = object.and_then(|object| world_box(object, view.time)) else { continue };
+        let by = (to.centre() - from.centre())[axis.index()];
+        if by.abs() <= rounding(&to).max(rounding(&from)) {
             continue;
-        };
+        }
         match moved(scene, view, id, axis.unit() * by, phase) {
             Ok(command) => commands.push(command),
             Err(why) => refused = why,
         }
     }
     if commands.is_empty() { Err(refused) } else { Ok(Command::Batch(commands)) }
+}
+
+/// Returns a distance that may be due to the rounding of a box's coordinates.
+fn rounding(bounds: &Bounds) -> f64 {
+    1e-12 * bounds.max.abs().max(bounds.min.abs()).max_element()
 }
 
 /// Moves an object along the world's axes.
