@@ -440,6 +440,34 @@ fn a_drag_in_the_colour_picker_is_one_step() {
 }
 
 #[test]
+fn a_colour_that_was_typed_counts_however_its_field_is_left() {
+    for way in ["Enter", "Tab", "another field", "the picture", "Escape"] {
+        let mut editor = Editor::tall();
+        let before = editor.scene().background;
+        click(&mut editor, Role::ColorWell, "Background");
+        let typed = |editor: &mut Editor, text| {
+            click(editor, Role::TextInput, "Background: hexadecimal");
+            editor.press(Command(Key::A));
+            type_text(editor, text);
+        };
+        typed(&mut editor, "#ff8000");
+        match way {
+            "Enter" => editor.press(Named(Key::Enter)),
+            "Tab" => editor.press(Named(Key::Tab)),
+            "Escape" => editor.press(Named(Key::Escape)),
+            "another field" => click(&mut editor, Role::SpinButton, "Background: red"),
+            _ => {
+                let empty = editor.at(0.02, 0.02);
+                editor.click(empty, PointerButton::Primary);
+            }
+        }
+        let expected = if way == "Escape" { before } else { Color([255, 128, 0]) };
+        let steps = usize::from(way != "Escape");
+        assert_eq!((editor.scene().background, editor.steps()), (expected, steps), "{way}");
+    }
+}
+
+#[test]
 fn a_key_hides_tooltips_until_the_pointer_moves() {
     let mut editor = Editor::of_size(1280.0, 800.0);
     let hint = "Draws the edges of polygons instead of filling them.";

@@ -139,17 +139,27 @@ fn hex_ui(ui: &mut Ui, name: &str, color: Color) -> Option<Color> {
     let id = ui.scope_id().with("hexadecimal");
     let field = id.with("field");
     let kept = ui.data(|data| data.get_temp::<String>(id));
-    let edited = ui.memory(|memory| memory.has_focus(field));
+    // Another field that was clicked already has the focus.
+    let edited = ui.memory(|memory| memory.has_focus(field) || memory.had_focus_last_frame(field));
     let mut text = kept.filter(|_| edited).unwrap_or_else(|| format!("#{r:02x}{g:02x}{b:02x}"));
     let edit = TextEdit::singleline(&mut text).id(field).desired_width(WIDTH - 8.0);
     let response = ui.add(edit).accessible_name(format!("{name}: hexadecimal"));
-    // Escape leaves the field without a change.
-    let left = response.lost_focus() && !ui.input(|input| input.key_pressed(egui::Key::Escape));
+    // A click elsewhere takes the focus one frame later, when the picker may be closed. Escape
+    // leaves the field without a change.
+    let clicked_away = edited && response.clicked_elsewhere();
+    let escaped = ui.input(|input| input.key_pressed(egui::Key::Escape));
+    let left = (response.lost_focus() || clicked_away) && !escaped;
     let to = hexadecimal(&text);
     if left && to.is_none() {
         number::say_bad_text(ui.ctx(), &text);
     }
-    ui.data_mut(|data| data.insert_temp(id, text));
+    ui.data_mut(|data| {
+        if left {
+            data.remove::<String>(id);
+        } else {
+            data.insert_temp(id, text);
+        }
+    });
     response.on_hover_text("Six hexadecimal digits: red, green, blue");
     to.filter(|to| left && *to != color)
 }
