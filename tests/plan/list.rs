@@ -2,9 +2,13 @@
 
 use glam::{DMat4, DQuat, DVec3};
 use marraztu_core::accuracy::{LightAt, Settings, Shot};
+use marraztu_core::base::Shared;
 use marraztu_core::base::image::Size;
-use marraztu_core::edit::items;
-use marraztu_core::scene::{Command, Fill, Item, ItemId, LightKind, Scene, Tracked, View};
+use marraztu_core::edit::{framing, items};
+use marraztu_core::scene::{
+    Command, Fill, Item, ItemId, LightKind, LoadOptions, MaterialChoice, Object, Scene, Sides,
+    Tracked, View,
+};
 use marraztu_io as io;
 use marraztu_lab::cost;
 use marraztu_render::explain_frame;
@@ -140,6 +144,24 @@ fn maps_of_ns_need_light_at_pixels() {
         let is_on = |one: &&EffectUse| one.effect == Effect::Maps && one.state.is_on();
         let maps = uses.iter().find(is_on).unwrap();
         assert_eq!(maps.state.why(), why, "{light:?}");
+    }
+}
+
+#[test]
+fn an_open_surface_seen_from_the_front_is_not_called_closed() {
+    let text = b"v -1 -1 0\nv 1 -1 0\nv 0 1 0\nf 1 2 3\n";
+    let loaded = io::parse(text, "a", None, &LoadOptions::default(), &io::Progress::new());
+    let model = Shared::new(loaded.unwrap().model);
+    for (degrees, why) in [(0.0_f64, "no back is visible"), (180.0, "lit: the surface is open")] {
+        let mut object = Object::new(model.clone(), MaterialChoice::File);
+        object.sides = Sides::Auto;
+        object.placement = Tracked::new(DMat4::from_rotation_y(degrees.to_radians()));
+        let (mut scene, view) = io::empty_scene();
+        items::insert_object(&scene, object).apply(&mut scene).unwrap();
+        framing::all(&scene, &view).unwrap().apply(&mut scene).unwrap();
+        let uses = explain_frame(&Shot::new(&scene, &view, &Settings::default(), SIZE)).1;
+        let backs = uses.iter().find(|one| one.effect == Effect::BackFaces).unwrap();
+        assert_eq!(backs.state.why(), why);
     }
 }
 

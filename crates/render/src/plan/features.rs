@@ -328,6 +328,7 @@ fn vertex_colors(it: &Facts<'_>) -> EffectState {
 
 fn back_faces(it: &Facts<'_>) -> EffectState {
     match it.draw.back {
+        Back::Culled if it.object.is_two_sided() => EffectState::left_out("no back is visible"),
         Back::Culled if it.object.sides == Sides::Auto => {
             EffectState::left_out("the surface is closed")
         }
