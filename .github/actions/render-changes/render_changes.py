@@ -19,7 +19,7 @@ import tempfile
 from pathlib import Path
 from urllib.parse import quote
 
-PATTERNS = ["*.obj", "*.obj.gz", "*.marraztu"]
+PATTERNS = [f":(icase)*.{ending}" for ending in ("obj", "obj.gz", "stl", "stl.gz", "marraztu")]
 PAGE = "<!doctype html><meta charset=utf-8><title>Changed models</title>\n"
 STYLE = "<style>body { font: 16px sans-serif } td { vertical-align: top }</style>\n"
 
@@ -76,7 +76,8 @@ def main():
             before = draw(folder, out / "before", options)
         finally:
             git("worktree", "remove", "--force", folder)
-    if before:
+    # A base of broken models has no pictures.
+    if (out / "before").exists():
         shutil.copytree(out / "before", out / "after")
     after = draw(".", out / "after", options)
     rows, cells, broken = [], [], False
