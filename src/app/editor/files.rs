@@ -37,8 +37,8 @@ use marraztu_render::plan_frame;
 const MOST_LOADING: usize = 8;
 
 impl App {
-    /// Loads models as the key `f` does, or opens the scenes among the files. Models go to the user's
-    /// scene: the scene of a lesson ends with the lesson.
+    /// Loads models as the key `f` does, or opens the scenes among the files. Models go to the
+    /// user's scene: the scene of a lesson ends with the lesson.
     pub(crate) fn load_files(&mut self, ctx: &Context, paths: Vec<PathBuf>) {
         self.back_to_scene();
         for path in paths {

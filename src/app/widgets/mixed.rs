@@ -1,4 +1,5 @@
-//! Controls whose value differs between the selected items: fields show "mixed", and no option is on.
+//! Controls whose value differs between the selected items: fields show "mixed", and no option is
+//! on.
 //!
 //! A mixed control takes the value that one of the items already has, since the others change.
 

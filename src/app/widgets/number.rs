@@ -1,8 +1,8 @@
 //! Number fields: the value can be dragged, typed, or given as an expression.
 //!
 //! An idle field shows the digits that fit; a focused field shows all of them. Leaving a field
-//! without typing another number changes nothing, so tabbing through fields does not round values. A
-//! mixed field is empty while it is edited: any number typed into it is a change.
+//! without typing another number changes nothing, so tabbing through fields does not round values.
+//! A mixed field is empty while it is edited: any number typed into it is a change.
 
 use std::cell::Cell;
 use std::ops::RangeInclusive;
