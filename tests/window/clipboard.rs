@@ -72,6 +72,29 @@ fn an_object_goes_as_text_to_another_window_and_comes_back() {
 }
 
 #[test]
+fn each_press_pastes_whatever_key_stands_for_the_clipboard() {
+    let mut editor = Editor::new();
+    editor.perform(Action::SubjectObject);
+    let text = editor.copied(Event::Copy).unwrap();
+    let released = |key, place| {
+        let (modifiers, pressed, repeat) = (Modifiers::COMMAND, false, false);
+        Event::Key { key, physical_key: Some(place), pressed, repeat, modifiers }
+    };
+    // Ctrl+V of a Dvorak layout, and Shift+Insert of Windows, each while Ctrl or Shift stays down.
+    let keys = [released(Key::V, Key::Period), released(Key::Insert, Key::Insert)];
+    for (count, release) in keys.iter().flat_map(|key| [key; 2]).enumerate() {
+        editor.harness.event(Event::Paste(text.clone()));
+        editor.settle();
+        // The system repeats the event while the key is held.
+        editor.harness.event(Event::Paste(text.clone()));
+        editor.settle();
+        editor.harness.event(release.clone());
+        editor.settle();
+        assert_eq!(editor.scene().objects.len(), 4 + count, "{release:?}");
+    }
+}
+
+#[test]
 fn pastes_are_offset_from_the_original_and_from_each_other() {
     let mut editor = Editor::new();
     editor.perform(Action::SubjectObject);

@@ -36,6 +36,9 @@ pub(crate) struct Keyboard {
     /// The text typed in mode [`Letters::Type`], with Enter as a line feed and Backspace as itself.
     typed: String,
     down: BTreeSet<Key>,
+    /// The key of the last event of the clipboard, until some key is released: which key stood for
+    /// it is unknown, as layouts differ and Shift+Insert pastes on Windows.
+    clipboard_down: Option<Key>,
     /// Whether Alt is down: typed text may then belong to a menu or another layer of the layout.
     alt: bool,
     /// Whether the last key event was a repetition by a held key; its text event follows.
@@ -191,7 +194,7 @@ impl Keyboard {
             }
         }
         // The release arrives as a usual key event.
-        let repeats = !self.down.insert(key);
+        let repeats = self.clipboard_down.replace(key) == Some(key);
         self.key(owner, key, Modifiers::COMMAND, repeats);
     }
 
@@ -282,6 +285,7 @@ impl egui::Plugin for Keyboard {
             }
             Event::Key { key, physical_key, pressed: false, .. } => {
                 self.down.remove(&physical_key.unwrap_or(*key));
+                self.clipboard_down = None;
                 true
             }
             Event::Text(text) => {
@@ -302,6 +306,7 @@ impl egui::Plugin for Keyboard {
             }
             Event::WindowFocused(_) => {
                 self.down.clear();
+                self.clipboard_down = None;
                 true
             }
             Event::PointerButton { pressed: true, .. } => {
