@@ -206,24 +206,27 @@ export class Tab {
     }, picture, x, y);
   }
 
-  // Presses keys such as "x" or "Control+Shift+R".
-  async press(chord) {
-    const keys = chord.split("+");
+  // Presses keys such as "x" or "Control+Shift+R", the last one several times while the others are down.
+  async press(chord, times = 1) {
+    const held = chord.split("+");
+    const last = held.pop();
+    const presses = Array.from({ length: times }, () => [["keyDown", last], ["keyUp", last]]);
+    const strokes = [
+      ...held.map((key) => ["keyDown", key]), ...presses.flat(), ...held.toReversed().map((key) => ["keyUp", key]),
+    ];
     let modifiers = 0;
-    for (const [type, order] of [["keyDown", keys], ["keyUp", [...keys].reverse()]]) {
-      for (const key of order) {
-        if (type === "keyUp" && key in MODIFIERS) modifiers &= ~MODIFIERS[key];
-        if (type === "keyDown" && key in MODIFIERS) modifiers |= MODIFIERS[key];
-        const isText = key.length === 1;
-        const code = /^[a-z0-9]$/i.test(key) ? key.toUpperCase().charCodeAt(0) : CODES[key];
-        const writes = isText && (modifiers & ~MODIFIERS.Shift) === 0;
-        await this.send("Input.dispatchKeyEvent", {
-          type: type === "keyDown" && !writes && key !== "Enter" ? "rawKeyDown" : type,
-          key, modifiers, windowsVirtualKeyCode: code,
-          code: /^[a-z]$/i.test(key) ? `Key${key.toUpperCase()}` : isText ? "" : key,
-          text: type === "keyUp" ? undefined : writes ? key : key === "Enter" ? "\r" : undefined,
-        });
-      }
+    for (const [type, key] of strokes) {
+      if (type === "keyUp" && key in MODIFIERS) modifiers &= ~MODIFIERS[key];
+      if (type === "keyDown" && key in MODIFIERS) modifiers |= MODIFIERS[key];
+      const isText = key.length === 1;
+      const code = /^[a-z0-9]$/i.test(key) ? key.toUpperCase().charCodeAt(0) : CODES[key];
+      const writes = isText && (modifiers & ~MODIFIERS.Shift) === 0;
+      await this.send("Input.dispatchKeyEvent", {
+        type: type === "keyDown" && !writes && key !== "Enter" ? "rawKeyDown" : type,
+        key, modifiers, windowsVirtualKeyCode: code,
+        code: /^[a-z]$/i.test(key) ? `Key${key.toUpperCase()}` : isText ? "" : key,
+        text: type === "keyUp" ? undefined : writes ? key : key === "Enter" ? "\r" : undefined,
+      });
     }
   }
 

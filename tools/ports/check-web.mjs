@@ -100,8 +100,8 @@ async function hear(...events) {
   await rest();
 }
 
-const press = (key, modifiers = 0) =>
-  [true, false].map((pressed) => ({ kind: "key", key, code: "", pressed, repeat: false, modifiers }));
+const press = (key, modifiers = 0, code = "") =>
+  [true, false].map((pressed) => ({ kind: "key", key, code, pressed, repeat: false, modifiers }));
 
 write("");
 if (editor.start(width, height, 1) !== 0) {
@@ -109,7 +109,8 @@ if (editor.start(width, height, 1) !== 0) {
 }
 editor.draw_elsewhere();
 await rest();
-await hear(...press("k", 2));
+// Ctrl+K of a Russian layout.
+await hear(...press("л", 2, "KeyK"));
 await hear({ kind: "text", text: "overlays" });
 await hear(...press("Enter"));
 

@@ -165,9 +165,20 @@ v 2 -1 0\nv 4 -1 0\nv 4 1 0\nv 2 1 0\nvn 0 0 1\nusemtl glow\nf 1//1 2//1 3//1 4/
     (id: 2, name: "green", model: File(path: "parts/green.obj"), material: File)])`);
 }
 
+// A large red square and a small blue one in front of it, with equal names of all files.
+async function writeNamesakes(at) {
+  for (const [name, size, depth, color] of [["large", 3, -1, "1 0 0"], ["small", 1, 0, "0 0 1"]]) {
+    await mkdir(join(at, name), { recursive: true });
+    const corners = [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([x, y]) => `v ${size * x} ${size * y} ${depth}`).join("\n");
+    await writeFile(join(at, name, "model.obj"), `mtllib material.mtl\n${corners}\nvn 0 0 1\nusemtl glow\nf 1//1 2//1 3//1 4//1\n`);
+    await writeFile(join(at, name, "material.mtl"), `newmtl glow\nKa 0 0 0\nKd 0 0 0\nKs 0 0 0\nKe ${color}\n`);
+  }
+}
+
 const files = await mkdtemp(join(tmpdir(), "marraztu-models-"));
 await writeModels(join(files, "models"));
 await writeScene(join(files, "scenes"));
+await writeNamesakes(files);
 const served = await serve({ "": folder, models: join(files, "models"), scenes: join(files, "scenes") });
 // Another origin, with the example of docs/web.md for a page that embeds a picture.
 const manual = await readFile(new URL("../../docs/web.md", import.meta.url), "utf8");
@@ -320,6 +331,37 @@ const checks = {
     // The square is small and far away.
     await page.tab.press(".");
     await page.sees("red", "blue");
+  },
+
+  async "an object is copied once and pasted twice while Ctrl is down"(visit) {
+    const page = await visit();
+    await page.open(site);
+    await page.sees("red");
+    // The keys act on objects, not on cameras.
+    await page.tab.press("c");
+    await page.tab.press("Control+c");
+    await page.hears("Copied");
+    await page.tab.press("Control+v", 2);
+    const objects = async () => (await page.scene()).match(/model: /g).length;
+    await page.until("both pastes are there", async () => (await objects()) === 4);
+  },
+
+  async "files of equal names keep to their own models"(visit) {
+    const page = await visit();
+    await page.open(site);
+    const drop = (name) => page.tab.drop(500, 200, ["model.obj", "material.mtl"].map((file) => join(files, name, file)));
+    await drop("large");
+    await page.hears("Opened model");
+    await page.sees("red");
+    await drop("small");
+    await page.until("the material is asked for, and both are shown", async () => {
+      await page.tab.press("Enter");
+      await sleep(300);
+      return (await page.find(["blue"])) && (await page.find(["red"]));
+    });
+    const scene = await page.scene();
+    has(scene, 'path: "model.obj"', "the scene");
+    has(scene, 'path: "2/model.obj"', "the scene");
   },
 
   async "an example is fetched, also for unsaved work"(visit) {

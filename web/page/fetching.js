@@ -21,52 +21,49 @@ export class Fetching {
 
   // Fetches a model or a scene with its files. Returns its path.
   async model(url) {
-    const base = new URL(url, location.href);
+    // A model has no fragment, so "#" belongs to a name, as does a "%" that is no escape.
+    const base = new URL(url.replaceAll("#", "%23").replace(/%(?![0-9a-f]{2})/gi, "%25"), location.href);
     // The files keep their folders, so that "../" between them works.
     const path = this.files.add(decodeURIComponent(base.pathname).replace(/\/$/, "/model.obj"), await bytes(base));
     // Names of files may hold "#", "?" and "%".
     const place = (path) => new URL(path.slice(FILES.length).split("/").map(encodeURIComponent).join("/"), base);
-    await this.others(path, (other) => other.startsWith(`${FILES}/`) && place(other));
+    await this.others(path, async (other) => other.startsWith(`${FILES}/`) && bytes(place(other)));
     return path;
   }
 
   // Fetches the files of the built-in examples that a scene refers to.
   async examples(path) {
-    await this.others(path, () => null);
+    await this.others(path, async () => null);
   }
 
-  // Fetches the files that a file refers to. `place` returns the address of a path, if it has one.
-  async others(path, place) {
+  // Adds the files that a file refers to. `find` returns the content of the file at a path, if it finds one.
+  async others(path, find) {
     const tried = new Set();
     // A scene refers to models, a model to MTL files, and those to textures.
     for (let round = 0; round < 4; round++) {
       const wanted = this.missing(path).map((paths) => paths.filter((path) => !tried.has(path)));
       wanted.flat().forEach((path) => tried.add(path));
-      const all = await Promise.all(wanted.map((paths) => this.first(paths, place)));
+      const all = await Promise.all(wanted.map((paths) => this.first(paths, find)));
       if (!all.includes(true)) {
         break;
       }
     }
   }
 
-  // Fetches the file at the first of these paths that has one. Returns whether there was a file. The
+  // Adds the file at the first of these paths that has one. Returns whether there was a file. The
   // editor reports the others.
-  async first(paths, place) {
+  async first(paths, find) {
     for (const path of paths) {
       const isExample = path.startsWith(EXAMPLE);
-      const address = isExample ? `examples/${path.slice(EXAMPLE.length)}` : place(path);
-      if (!address) {
-        continue;
-      }
-      const found = await bytes(address).catch(() => null);
+      const finding = isExample ? bytes(`examples/${path.slice(EXAMPLE.length)}`) : find(path);
+      const found = await finding.catch(() => null);
       if (!found) {
         continue;
       }
       if (isExample) {
         this.files.addExample(path.slice(EXAMPLE.length), found);
       } else {
-        // The address has no "../".
-        this.files.add(decodeURIComponent(address.pathname), found);
+        this.files.add(path.slice(FILES.length), found);
       }
       return true;
     }

@@ -32,14 +32,34 @@ export class Files {
 
   // Adds a file of the user, in folders like those of its name. Returns its path.
   add(name, bytes) {
-    const parts = name.split("/").filter((part) => part && part !== "." && part !== "..");
-    const path = parts.join("/") || "file";
+    const path = normal(name) || "file";
     const file = put(this.user, path, bytes);
     this.known.set(path, file.data);
     this.share(`/files/${path}`, bytes);
     // Without room the editor works; recovered work then lacks this file.
     this.database?.transaction(USER, "readwrite").objectStore(USER).put(bytes, path);
     return `/files/${path}`;
+  }
+
+  // Returns the first of the folders "", "2/", "3/" ... where none of these files, names and bytes, replaces
+  // another one. Scenes may be replaced: no object refers to them.
+  freeFolder(list) {
+    const isFree = (path, bytes) => {
+      const known = this.known.get(normal(path));
+      return !known || /\.marraztu$/i.test(path) || isEqual(known, bytes);
+    };
+    for (let number = 1; ; number++) {
+      const folder = number === 1 ? "" : `${number}/`;
+      if (list.every(([name, bytes]) => isFree(folder + name, bytes))) {
+        return folder;
+      }
+    }
+  }
+
+  // Returns the content of a user's file by its path. A path in `folder` stands for the same one outside.
+  outside(path, folder) {
+    const inner = normal(path);
+    return inner.startsWith(`files/${folder}`) ? this.known.get(inner.slice(`files/${folder}`.length)) : undefined;
   }
 
   // Adds a file of the built-in examples.
@@ -166,6 +186,23 @@ export class Files {
     // The files are copied: the editor goes on writing.
     store.put(Object.fromEntries(list.map(([path, bytes]) => [path, bytes.slice()])), STORE);
   }
+}
+
+// Resolves "." and ".." in a path, which gets no slash in front.
+function normal(path) {
+  const parts = [];
+  for (const part of path.split("/")) {
+    if (part === "..") {
+      parts.pop();
+    } else if (part && part !== ".") {
+      parts.push(part);
+    }
+  }
+  return parts.join("/");
+}
+
+function isEqual(bytes, others) {
+  return bytes.length === others.length && bytes.every((byte, at) => byte === others[at]);
 }
 
 // Puts a file into folders like those of its path. Returns it.

@@ -239,16 +239,42 @@ canvas.addEventListener("wheel", (event) => {
 // The keys that the browser keeps: they copy, cut and paste, reload, or open tools of developers.
 function isOfBrowser(event) {
   const command = event.ctrlKey || event.metaKey;
-  return (command && !event.shiftKey && !event.altKey && ["c", "x", "v", "r"].includes(event.key.toLowerCase()))
-    || (command && event.shiftKey && ["i", "j"].includes(event.key.toLowerCase()))
+  // Of layouts without Latin letters, the places of the keys count.
+  const letter = (/^[^\x00-\x7f]$/.test(event.key) ? event.code.replace(/^Key/, "") : event.key).toLowerCase();
+  return (command && !event.shiftKey && !event.altKey && ["c", "x", "v", "r"].includes(letter))
+    || (command && event.shiftKey && ["i", "j"].includes(letter))
     || event.key === "F11";
+}
+
+// The keys that are down together with Ctrl or Cmd, by their places. On a Mac, browsers do not report the
+// release of a key while Cmd is down: its next press and the release of Cmd end its press.
+const commanded = new Map();
+
+function release(code, event) {
+  if (commanded.has(code)) {
+    hear({ kind: "key", key: commanded.get(code), code, pressed: false, repeat: false, modifiers: modifiers(event) });
+    commanded.delete(code);
+  }
 }
 
 function key(event, pressed) {
   if (event.isComposing || event.key === "Process" || event.key === "Unidentified") {
     return;
   }
-  if (isOfBrowser(event)) {
+  const isCommand = event.key === "Control" || event.key === "Meta";
+  if (isCommand && !pressed) {
+    [...commanded.keys()].forEach((code) => release(code, event));
+  }
+  if (pressed && !event.repeat) {
+    release(event.code, event);
+  }
+  if (pressed && !isCommand && (event.ctrlKey || event.metaKey)) {
+    commanded.set(event.code, event.key);
+  } else {
+    commanded.delete(event.code);
+  }
+  // The clipboard's events report presses, but not releases.
+  if (pressed && isOfBrowser(event)) {
     return;
   }
   hear({ kind: "key", key: event.key, code: event.code, pressed, repeat: event.repeat, modifiers: modifiers(event) });
@@ -290,10 +316,18 @@ window.addEventListener("blur", () => hear({ kind: "focus", focused: false }));
 let copied = "";
 let copying = false;
 
-function copy(event, kind) {
+// The editor takes such an event for the press of a key. A menu of the browser has no key to release.
+function hearClipboard(event, key) {
+  hear(event);
+  if (commanded.size === 0) {
+    hear({ kind: "key", key, code: "", pressed: false, repeat: false, modifiers: 0 });
+  }
+}
+
+function copy(event, kind, key) {
   copied = "";
   copying = true;
-  hear({ kind });
+  hearClipboard({ kind }, key);
   run(performance.now());
   copying = false;
   if (copied) {
@@ -312,26 +346,36 @@ async function copyPicture(width, height) {
   });
 }
 
-document.addEventListener("copy", (event) => copy(event, "copy"));
-document.addEventListener("cut", (event) => copy(event, "cut"));
+document.addEventListener("copy", (event) => copy(event, "copy", "c"));
+document.addEventListener("cut", (event) => copy(event, "cut", "x"));
 document.addEventListener("paste", (event) => {
   event.preventDefault();
   const pasted = event.clipboardData.getData("text/plain");
   if (pasted) {
-    hear({ kind: "paste", text: pasted });
+    hearClipboard({ kind: "paste", text: pasted }, "v");
   }
 });
 
 // Files.
 
+// Adds files of the user. Returns the paths of those to open.
 async function add(list) {
-  const paths = [];
+  const contents = [];
   for (const [name, file] of list) {
     try {
-      paths.push(files.add(name, new Uint8Array(await file.arrayBuffer())));
+      contents.push([name, new Uint8Array(await file.arrayBuffer())]);
     } catch (error) {
       // The file may be gone, or not readable.
       status.textContent = `${name}: ${error.message}`;
+    }
+  }
+  // Objects keep their files: others of the same names go to a folder.
+  const folder = files.freeFolder(contents);
+  const paths = opened(contents.map(([name, bytes]) => files.add(folder + name, bytes)));
+  if (folder) {
+    // A model that was chosen alone uses the MTL files and textures that are there.
+    for (const path of paths) {
+      await fetching.others(path, async (other) => files.outside(other, folder));
     }
   }
   return paths;
@@ -339,7 +383,7 @@ async function add(list) {
 
 // Of several files, models and scenes are opened; the others are what they refer to.
 function opened(paths) {
-  const models = paths.filter((path) => /\.(obj|obj\.gz|marraztu)$/i.test(path));
+  const models = paths.filter((path) => /\.((obj|stl)(\.gz)?|marraztu)$/i.test(path));
   return models.length > 0 ? models : paths;
 }
 
@@ -353,7 +397,7 @@ function choose(endings) {
 
 picker.addEventListener("change", async () => {
   const paths = await add([...picker.files].map((file) => [file.name, file]));
-  write(opened(paths).join("\n"));
+  write(paths.join("\n"));
   editor.answer();
   schedule();
 });
@@ -377,7 +421,7 @@ canvas.addEventListener("drop", async (event) => {
     return;
   }
   const paths = await add(list);
-  write(opened(paths).join("\n"));
+  write(paths.join("\n"));
   editor.drop_files();
   schedule();
 });

@@ -71,8 +71,9 @@ impl PageEvent {
             Self::Key { key, code, pressed, repeat, modifiers } => {
                 let modifiers = keys(modifiers);
                 let mut events = vec![Event::ModifiersChanged(modifiers)];
-                if let Some(key) = Key::from_name(&key) {
-                    let physical_key = physical(&code);
+                let physical_key = physical(&code);
+                // Layouts without Latin letters act by the places of the keys, as in a window.
+                if let Some(key) = Key::from_name(&key).or(physical_key) {
                     events.push(Event::Key { key, physical_key, pressed, repeat, modifiers });
                 }
                 events
