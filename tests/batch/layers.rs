@@ -1,7 +1,5 @@
 //! Layers of `render` and `batch`: files, cameras, resuming and parts.
 
-#![expect(clippy::cast_possible_truncation, reason = "small pictures")]
-
 use super::*;
 
 /// The arguments that draw layers of two models from two views.
