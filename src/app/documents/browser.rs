@@ -34,6 +34,9 @@ pub(crate) struct Browser {
     pub(crate) look: Look,
     /// The text of the path field.
     path: String,
+    /// The path that was put into the field, with its text. The text may name another path: a name
+    /// that is not UTF-8 is shown with replacements, and `~` may be the name of a folder.
+    shown: (String, PathBuf),
     /// The filter of the list: the typed part of a name.
     part: Option<String>,
     /// The initial text of the path field, which does not filter the list.
@@ -47,6 +50,8 @@ pub(crate) struct Browser {
 
 #[derive(Clone, Debug)]
 struct Entry {
+    path: PathBuf,
+    /// The name as shown.
     name: String,
     is_folder: bool,
     bytes: u64,
@@ -76,6 +81,7 @@ impl Browser {
             places: Vec::new(),
             look: Look::default(),
             path: String::new(),
+            shown: Default::default(),
             part: None,
             proposal: String::new(),
             folder: PathBuf::new(),
@@ -84,7 +90,7 @@ impl Browser {
             shown_once: false,
         };
         browser.enter(folder);
-        browser.path = browser.folder.join(name).display().to_string();
+        browser.put(browser.folder.join(name));
         browser.proposal.clone_from(&browser.path);
         browser
     }
@@ -205,7 +211,7 @@ impl Browser {
             None => 0,
         };
         if let Some(row) = rows.get(to) {
-            self.path = row.display().to_string();
+            self.put(row.clone());
         }
         true
     }
@@ -214,12 +220,14 @@ impl Browser {
     /// match.
     fn rows(&self) -> Vec<(PathBuf, Option<&Entry>)> {
         let above = self.folder.parent().map(|above| (above.to_owned(), None));
-        let entry = |entry| (self.place(entry), Some(entry));
-        above.into_iter().chain(self.fitting().map(entry)).collect()
+        let entries = self.fitting().map(|entry| (entry.path.clone(), Some(entry)));
+        above.into_iter().chain(entries).collect()
     }
 
-    fn place(&self, entry: &Entry) -> PathBuf {
-        self.folder.join(&entry.name)
+    /// Puts a path into the field.
+    fn put(&mut self, path: PathBuf) {
+        self.path = path.display().to_string();
+        self.shown = (self.path.clone(), path);
     }
 
     /// Focuses the path field when it is shown next, as at first.
@@ -260,7 +268,7 @@ impl Browser {
             self.go(clicked);
             return None;
         }
-        self.path = clicked.display().to_string();
+        self.put(clicked.to_owned());
         again.then(|| self.take()).flatten()
     }
 
@@ -270,10 +278,8 @@ impl Browser {
         let name = typed.file_name().filter(|_| self.mode == Mode::Save && !typed.is_dir());
         let name = name.map(std::ffi::OsStr::to_owned);
         self.enter(folder);
-        self.path = match name {
-            Some(name) => self.folder.join(name).display().to_string(),
-            None => shown_folder(&self.folder),
-        };
+        // A name typed behind the folder is in it.
+        self.put(self.folder.join(name.unwrap_or_default()));
     }
 
     /// Lists the entries with names that contain the typed part. Hidden entries are listed on
@@ -308,7 +314,7 @@ impl Browser {
         let typed = self.typed();
         let ends = self.path.trim().ends_with(['/', std::path::MAIN_SEPARATOR]);
         let is_whole =
-            ends || typed.is_dir() || self.entries.iter().any(|entry| self.place(entry) == typed);
+            ends || typed.is_dir() || self.entries.iter().any(|entry| entry.path == typed);
         let name = typed.file_name().map(|name| name.to_string_lossy().to_lowercase());
         name.filter(|_| self.mode == Mode::Open && !is_whole)
     }
@@ -316,12 +322,18 @@ impl Browser {
     /// Returns the typed path. If a new path begins behind the folder, with a slash or with `~`,
     /// only the new path counts.
     fn typed(&self) -> PathBuf {
-        let path = self.path.trim();
+        let (text, path) = &self.shown;
+        let (folder, typed) = match self.path.strip_prefix(text.as_str()) {
+            Some("") => return path.clone(),
+            Some(typed) if text.ends_with(['/', std::path::MAIN_SEPARATOR]) => (path, typed),
+            _ => (&self.folder, self.path.as_str()),
+        };
+        let path = typed.trim();
         let path = path.rfind("//").map_or(path, |at| &path[at + 1..]);
         let home = path.rfind("/~/").map(|at| &path[at + 3..]).or(path.strip_prefix("~/"));
         match home.zip(std::env::home_dir()) {
             Some((rest, home)) => home.join(rest),
-            None => self.folder.join(path),
+            None => folder.join(path),
         }
     }
 
@@ -356,9 +368,9 @@ impl Browser {
             // If only one entry matches, it is chosen.
             let is_here = typed.parent() == Some(&self.folder) && self.path != self.proposal;
             let fitting: Vec<PathBuf> =
-                self.fitting().take(2).map(|entry| self.folder.join(&entry.name)).collect();
+                self.fitting().take(2).map(|entry| entry.path.clone()).collect();
             if let ([only], true) = (&fitting[..], is_here) {
-                self.path = only.display().to_string();
+                self.put(only.clone());
                 return self.take();
             }
             self.fault = Some("There is no such file.".to_owned());
@@ -388,6 +400,7 @@ impl Browser {
                     // Links are followed to their target.
                     let data = std::fs::metadata(entry.path()).ok();
                     Entry {
+                        path: entry.path(),
                         name: entry.file_name().to_string_lossy().into_owned(),
                         is_folder: data.as_ref().is_some_and(std::fs::Metadata::is_dir),
                         bytes: data.as_ref().map_or(0, std::fs::Metadata::len),
@@ -407,11 +420,6 @@ impl Browser {
         ending
             .is_some_and(|ending| self.endings.iter().any(|own| own.eq_ignore_ascii_case(&ending)))
     }
-}
-
-/// Formats a folder for the path field, such that a name typed behind it is in it.
-fn shown_folder(folder: &Path) -> String {
-    folder.join("").display().to_string()
 }
 
 #[cfg(test)]
@@ -469,6 +477,36 @@ mod tests {
         assert_eq!(typed("zebra"), (0, None));
         assert_eq!(typed("Tea"), (1, Some(Choice::File(folder.path().join("teapot.obj")))));
         assert_eq!(typed("bunny.obj").0, 3, "a whole name hides nothing");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn everything_that_is_listed_can_be_chosen_whatever_its_name_is() {
+        use std::os::unix::ffi::OsStrExt as _;
+        let folder = tempfile::tempdir().unwrap();
+        // The name of a file and a folder, as of old archives.
+        let old = |name: &[u8]| PathBuf::from(std::ffi::OsStr::from_bytes(name));
+        for place in ["~".into(), old(b"caf\xe9")] {
+            let place = folder.path().join(place);
+            std::fs::create_dir(&place).unwrap();
+            for name in ["a.obj".into(), old(b"a\xe9.obj")] {
+                let file = place.join(name);
+                std::fs::write(&file, "").unwrap();
+                let mut browser = Browser::new("", Mode::Open, vec!["obj"], folder.path(), "");
+                let listed = |browser: &Browser, path: &Path| {
+                    browser.rows().iter().any(|(row, _)| row == path)
+                };
+                assert!(listed(&browser, &place));
+                assert_eq!(browser.click(&place), None);
+                assert!(listed(&browser, &file));
+                // A name can be typed behind the folder.
+                browser.path += "a";
+                browser.follow();
+                assert_eq!(browser.typed(), place.join("a"));
+                assert_eq!(browser.click(&file), None);
+                assert_eq!(browser.click(&file), Some(Choice::File(file)));
+            }
+        }
     }
 
     #[test]

@@ -255,7 +255,7 @@ mod tests {
     fn folders_come_first_in_every_order() {
         let entry = |name: &str, is_folder, bytes| {
             let modified = Some(SystemTime::UNIX_EPOCH + Duration::from_secs(bytes));
-            Entry { name: name.to_owned(), is_folder, bytes, modified }
+            Entry { path: PathBuf::from(name), name: name.to_owned(), is_folder, bytes, modified }
         };
         let mut entries = [entry("b", false, 9), entry("A", false, 1), entry("z", true, 5)];
         let mut sorted = |by, reversed| {
