@@ -361,7 +361,10 @@ fn a_lesson_measures_its_axis_by_itself_and_tells_the_cost() {
     editor.ask(Request::Lab(LabRequest::MeasureAxis("rounding")));
     until_measured(&mut editor);
     editor.ask(Request::Lab(LabRequest::ShowLesson("rounding")));
+    // The measurement waits for the final size of the picture.
+    editor.settle();
     assert!(lab(&editor).running.is_some() && editor.shows("Measuring on this machine"));
+    assert!(!lab(&editor).is_stale(editor.state()), "the picture is smaller than before the card");
     until_measured(&mut editor);
     let rounding = Axis::named("rounding").unwrap();
     let cost = lab(&editor).costs["rounding"].clone();

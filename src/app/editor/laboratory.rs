@@ -43,6 +43,9 @@ pub(crate) struct Work {
     /// The latest intermediate findings.
     so_far: Arc<Mutex<Option<Findings>>>,
     blame: Option<Task<Option<Explained>>>,
+    /// The axis of a new lesson, and the size of the picture in the last frame: the axis is
+    /// measured once the lesson's card has given the picture its final size.
+    lesson: Option<(&'static Axis, Option<Size>)>,
     /// The command that repeats the measurement.
     command: String,
     /// When the window was last drawn.
@@ -189,7 +192,7 @@ impl App {
             LabRequest::Against(reference) => lab.reference = reference,
             LabRequest::Pick(picking) => lab.picking = picking,
             LabRequest::Attribute(at) => self.explain(ctx, at),
-            LabRequest::ShowLesson(key) => self.show_lesson(ctx, key),
+            LabRequest::ShowLesson(key) => self.show_lesson(key),
             LabRequest::Back => self.back_to_scene(),
         }
     }
@@ -310,6 +313,7 @@ impl App {
         }
         (lab.running, plan.measuring) = (None, false);
         (self.lab.sweep, self.lab.suite, self.lab.blame) = (None, None, None);
+        self.lab.lesson = None;
         self.measuring = None;
     }
 
@@ -335,6 +339,7 @@ impl App {
 
     /// Handles the results of background work.
     pub(crate) fn hear_laboratory(&mut self, ctx: &Context) {
+        self.measure_lesson(ctx);
         self.tell_progress();
         self.hear_blame();
         self.hear_suite(ctx);
@@ -358,6 +363,23 @@ impl App {
         }
         self.lab.sweep = None;
         self.state.lab.running = None;
+    }
+
+    /// Starts to measure the axis of a new lesson if the size of the picture rests.
+    fn measure_lesson(&mut self, ctx: &Context) {
+        let size = self.viewport.size();
+        match &mut self.lab.lesson {
+            Some((axis, last)) if last.is_some() && *last == size => {
+                let axes = vec![*axis];
+                self.lab.lesson = None;
+                self.sweep(ctx, Thoroughness::AXIS, axes);
+            }
+            Some((_, last)) => {
+                *last = size;
+                ctx.request_repaint();
+            }
+            None => {}
+        }
     }
 
     fn hear_blame(&mut self) {
@@ -407,7 +429,7 @@ impl App {
 
     /// Shows the lesson on an axis in its scene, with the settings that show its effect best, and
     /// sets the user's scene aside. The choices of the axis are measured, for the lesson to quote.
-    pub(crate) fn show_lesson(&mut self, ctx: &Context, key: &str) {
+    pub(crate) fn show_lesson(&mut self, key: &str) {
         let Some(axis) = Axis::named(key) else { return };
         let lesson = io::lesson_on(axis);
         match io::lesson_scene(&lesson.scene) {
@@ -426,7 +448,7 @@ impl App {
                     self.waiting_scene = Some(Box::new(own));
                 }
                 if !self.state.lab.costs.contains_key(axis.key) {
-                    self.sweep(ctx, Thoroughness::AXIS, vec![axis]);
+                    self.lab.lesson = Some((axis, None));
                 }
             }
             Err(error) => self.dialogs.tell_fault(format!("{error}.")),
