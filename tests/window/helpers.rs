@@ -156,6 +156,11 @@ const THREE: &str = "v 0 0 0\nv 60 0 0\nv 0 60 0\nf 1 2 3\nf 1 2 3\nf 1 2 3\n";
 /// An editor with a model file of one triangle.
 fn with_file(path: &std::path::Path) -> Editor {
     std::fs::write(path, ONE).unwrap();
+    with_model(path)
+}
+
+/// An editor with this model file.
+fn with_model(path: &std::path::Path) -> Editor {
     let loaded = io::load(path, &LoadOptions::default(), &io::Progress::new()).unwrap();
     let silver = MaterialChoice::Preset(PresetId::SILVER);
     let object = Object::new(Shared::new(loaded.model), silver);
@@ -240,4 +245,21 @@ fn a_file_that_another_program_saves_is_reloaded_automatically() {
     until(&mut editor, |editor| polygons(&editor.scene()) == 2);
     editor.perform(Action::ToggleWatch);
     assert_eq!(Action::ToggleWatch.is_on(editor.state()), Some(false));
+}
+
+#[test]
+fn a_material_file_that_another_program_saves_is_reloaded_with_its_model() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("sail.obj");
+    let paint = |text: &str| {
+        std::fs::write(folder.path().join("sail.mtl"), format!("newmtl paint\n{text}\n")).unwrap();
+    };
+    paint("Kd 1 0 0");
+    std::fs::write(&path, format!("mtllib sail.mtl\nusemtl paint\n{ONE}")).unwrap();
+    let mut editor = with_model(&path);
+    editor.perform(Action::ToggleWatch);
+    let before = editor.scene();
+    paint("Kd 0 0.5 0");
+    until(&mut editor, |editor| editor.scene() != before);
+    assert_eq!(editor.state().history.steps().last(), Some("Reload sail"));
 }

@@ -25,13 +25,14 @@ use marraztu_io::{self as io, LoadError, is_example};
 const PAUSE: Duration = Duration::from_millis(500);
 
 impl App {
-    /// Reads the models of the scene again: all of them, or only from these files.
+    /// Reads the models of the scene again: all of them, or only those of these files.
     pub(crate) fn reload_models(&mut self, ctx: &Context, only: Option<&BTreeSet<PathBuf>>) {
         let mut wanted: Vec<(PathBuf, LoadOptions)> = Vec::new();
         // A file is read once for all objects with the same options.
         for (path, model) in models(&self.state.scene) {
             let file = (path.clone(), model.options);
-            if !wanted.contains(&file) && only.is_none_or(|only| only.contains(path)) {
+            let is_meant = only.is_none_or(|only| files(path, model).any(|it| only.contains(it)));
+            if is_meant && !wanted.contains(&file) {
                 wanted.push(file);
             }
         }
@@ -122,6 +123,11 @@ fn models(scene: &Scene) -> impl Iterator<Item = (&PathBuf, &Shared<Model>)> {
     })
 }
 
+/// Lists the file of a model, and its MTL files and textures.
+fn files<'a>(path: &'a PathBuf, model: &'a Model) -> impl Iterator<Item = &'a PathBuf> {
+    std::iter::once(path).chain(&model.companions)
+}
+
 /// Watched files.
 #[derive(Debug)]
 pub(crate) struct Watch {
@@ -159,7 +165,8 @@ impl Watch {
         if self.of.as_ref() == Some(scene) {
             return;
         }
-        let paths: BTreeSet<&PathBuf> = models(scene).map(|(path, _)| path).collect();
+        let paths: BTreeSet<&PathBuf> =
+            models(scene).flat_map(|(path, model)| files(path, model)).collect();
         let mut files = lock(&self.files);
         // Known files keep their stamps, so a change between two scenes is not missed.
         files.seen.retain(|path, _| paths.contains(path));
