@@ -340,10 +340,12 @@ const checks = {
     // The keys act on objects, not on cameras.
     await page.tab.press("c");
     await page.tab.press("Control+c");
-    await page.hears("Copied");
+    await page.hears("Copied r_falke");
     await page.tab.press("Control+v", 2);
-    const objects = async () => (await page.scene()).match(/model: /g).length;
-    await page.until("both pastes are there", async () => (await objects()) === 4);
+    await page.hears("Pasted r_falke");
+    await page.still();
+    const copies = (await page.scene()).match(/name: "r_falke \d+"/g).toSorted().join(", ");
+    equal(copies, 'name: "r_falke 2", name: "r_falke 3"', "the copies");
   },
 
   async "files of equal names keep to their own models"(visit) {
