@@ -129,16 +129,19 @@ def test_ctrl_c_during_the_first_picture_raises_keyboard_interrupt(tmp_path):
                 time.sleep(0.01)
                 spec = getattr(sys.modules.get("numpy"), "__spec__", None)
                 loads = getattr(spec, "_initializing", True)
-            # The picture takes longer.
-            time.sleep(0.3)
-            os.kill(os.getpid(), signal.SIGINT)
+            # The picture takes longer. On a busy machine, other imports may still lose the first one.
+            while not ended.wait(1):
+                os.kill(os.getpid(), signal.SIGINT)
 
+        ended = threading.Event()
         threading.Thread(target=interrupt).start()
         try:
             scene.render(8000, 8000, samples=256, threads=1)
             time.sleep(30)
         except KeyboardInterrupt:
+            ended.set()
             print("interrupted")
+        ended.set()
         """,
         head=head,
     )
