@@ -51,7 +51,8 @@ def test_a_child_of_a_fork_draws_the_same_picture():
 def test_a_fork_while_another_thread_draws_raises_an_error_that_names_spawn():
     output = run(
         """
-        thread = threading.Thread(target=scene.render, args=(3000, 3000), kwargs={"samples": 256})
+        large = {"samples": 256, "threads": 1}
+        thread = threading.Thread(target=scene.render, args=(8000, 8000), kwargs=large)
         thread.start()
         time.sleep(0.3)
         child = os.fork()
@@ -130,7 +131,7 @@ def test_ctrl_c_during_the_first_picture_raises_keyboard_interrupt(tmp_path):
                 spec = getattr(sys.modules.get("numpy"), "__spec__", None)
                 loads = getattr(spec, "_initializing", True)
             # The picture takes longer. On a busy machine, other imports may still lose the first one.
-            while not ended.wait(1):
+            while not ended.wait(0.3):
                 os.kill(os.getpid(), signal.SIGINT)
 
         ended = threading.Event()
