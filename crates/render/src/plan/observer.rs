@@ -9,7 +9,7 @@ use crate::screen::clip::Screen;
 use marraztu_core::accuracy::{Resolution, Shot};
 use marraztu_core::base::image::Size;
 use marraztu_core::base::math;
-use marraztu_core::scene::{Lens, Projection, Spheres};
+use marraztu_core::scene::{CameraId, Lens, Observer, Projection, Spheres};
 
 /// The distance of the far plane in units of view space: at least this, and less than twice this.
 const FAR: f64 = 1024.0;
@@ -25,12 +25,12 @@ fn unit(lens: &Lens, projection: Projection) -> f64 {
     FAR / math::power_of_two_near(far.clamp(1e-120, 1e120))
 }
 
-/// The planes of an orthographic lens are at most this many times, up to a power of two, as far
-/// away as what is drawn.
+/// The largest distance of the planes of an orthographic lens, relative to that of the farthest
+/// thing that is drawn, up to a power of two.
 const SLACK: f64 = 16.0;
 
-/// Returns the lens of the camera, in orthographic projection with planes that are not much farther
-/// away than what is drawn.
+/// Returns the lens of the camera. In orthographic projection, its planes are brought close to the
+/// things that are drawn.
 ///
 /// Orthographic depth is linear: between planes for large scenes, a small model would share a few
 /// depths. In perspective, the reversed depth does not depend on the far plane.
@@ -44,7 +44,7 @@ fn drawn_lens(shot: &Shot, world_from_view: DMat4) -> Lens {
     // The depth of a point, and its change along a vector.
     let depth = |p: DVec3| (p - eye).dot(towards).abs();
     let along = |v: DVec4| v.truncate().dot(towards).abs();
-    let objects = scene.objects.iter().filter(|(_, object)| object.visible);
+    let objects = scene.objects.iter().filter(|(id, object)| view.shows(*id, object));
     let objects = objects.filter_map(|(_, object)| {
         let bounds = object.model.mesh.bounds()?;
         let m = object.world_from_mesh(view.time);
@@ -55,7 +55,9 @@ fn drawn_lens(shot: &Shot, world_from_view: DMat4) -> Lens {
     // Bulbs are flat marks that face the observer.
     let lights = scene.lights.iter().filter(|(_, light)| light.on);
     let bulbs = lights.filter_map(|(_, light)| scene.light_origin(view, &light.kind)?.position);
-    let others = scene.cameras.iter().filter(|(id, _)| *id != view.camera);
+    // The camera that looks has no mark.
+    let looks = |id: CameraId| view.observer == Observer::Camera && id == view.camera;
+    let others = scene.cameras.iter().filter(|(id, _)| !looks(*id));
     let cameras = others.map(|(_, camera)| depth(camera.pose.now().eye) + CAMERA_MARK);
     let marks = bulbs.map(depth).chain(cameras).filter(|_| view.marks);
     let farthest = objects.chain(marks).filter(|depth| depth.is_finite()).fold(0.0, f64::max);

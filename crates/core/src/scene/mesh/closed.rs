@@ -121,7 +121,7 @@ mod tests {
 
     #[test]
     fn parts_are_closed_by_their_own_polygons() {
-        // A cube, its walls and its lid as separate parts, and a sheet beside it.
+        // A cube, its walls and its lid as separate parts, and a sheet next to it.
         let of_cube = CUBE.iter().flatten().copied();
         let corners = of_cube.chain([8, 9, 10, 11]).map(SourceCorner::bare);
         let side = |i: u16| [5.0 + f32::from(i & 1), f32::from(i >> 1), 0.0];
