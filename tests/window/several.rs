@@ -313,6 +313,9 @@ fn a_typed_angle_keeps_the_other_angles_of_all_objects() {
     // These say the same as (100, 0, 90).
     assert!(turns[0].distance(DVec3::new(-80.0, 180.0, -90.0)) < 1e-9, "{turns:?}");
     assert!(turns[1].distance(DVec3::new(100.0, 0.0, 0.0)) < 1e-9, "{turns:?}");
+    let shown = |editor: &Editor, name| control(editor, Role::SpinButton, name).value().unwrap();
+    assert_eq!(shown(&editor, "Rotation X"), "X 100", "it is the same in both");
+    assert!(shown(&editor, "Rotation Z").contains("mixed"));
     // A drag beyond a quarter turn goes on in both.
     type_into(&mut editor, "Rotation X", "0");
     type_into(&mut editor, "Rotation Y", "80");

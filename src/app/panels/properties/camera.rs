@@ -155,7 +155,7 @@ impl Shown<'_> {
 }
 
 /// Computes R = Ry Rx Rz of yaw, pitch and roll in degrees.
-fn camera_turn(degrees: DVec3) -> DMat3 {
+pub(super) fn camera_turn(degrees: DVec3) -> DMat3 {
     let turn = |axis: Axis, degrees: f64| math::rotation(axis.unit(), degrees.to_radians());
     turn(Axis::Y, degrees.x) * turn(Axis::X, degrees.y) * turn(Axis::Z, degrees.z)
 }

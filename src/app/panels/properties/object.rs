@@ -281,7 +281,7 @@ fn size(ui: &Ui, id: ObjectId, object: &Object) -> Option<DVec3> {
 }
 
 /// Computes R = Rx Ry Rz of angles in degrees.
-fn object_turn(degrees: DVec3) -> DMat3 {
+pub(super) fn object_turn(degrees: DVec3) -> DMat3 {
     Axis::ALL.iter().fold(DMat3::IDENTITY, |turn, axis| {
         turn * math::rotation(axis.unit(), degrees[axis.index()].to_radians())
     })

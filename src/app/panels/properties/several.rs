@@ -2,8 +2,11 @@
 
 use egui::{RichText, Ui};
 
+use super::camera::camera_turn;
+use super::object::object_turn;
 use crate::app::state::State;
 use crate::app::widgets::mixed::set_mixed;
+use marraztu_core::edit::angles::nearest;
 use marraztu_core::edit::placement;
 use marraztu_core::scene::{Anchor, Attenuation, ItemId, Light, Scene, SpotOwner};
 
@@ -42,7 +45,7 @@ pub(super) fn label(verb: &str, name: &str, others: &[ItemId]) -> String {
 
 /// Names the number fields that differ between two items of a kind.
 fn numbers(scene: &Scene, first: ItemId, other: ItemId) -> Vec<String> {
-    let (Some(a), Some(b)) = (fields(scene, first), fields(scene, other)) else {
+    let (Some(a), Some(b)) = (fields(scene, first, first), fields(scene, other, first)) else {
         return Vec::new();
     };
     let differs = |(name, a): &(String, f64)| {
@@ -52,15 +55,19 @@ fn numbers(scene: &Scene, first: ItemId, other: ItemId) -> Vec<String> {
     a.into_iter().filter(differs).map(|(name, _)| name).collect()
 }
 
-/// Lists the number fields of an item, by their names in the panel.
-fn fields(scene: &Scene, id: ItemId) -> Option<Vec<(String, f64)>> {
+/// Lists the number fields of an item, by their names in the panel. Angles are not unique: they are
+/// the ones nearest to those of the item `like`.
+fn fields(scene: &Scene, id: ItemId, like: ItemId) -> Option<Vec<(String, f64)>> {
     let mut all = Fields(Vec::new());
     match id {
         ItemId::Object(id) => {
             let object = scene.objects.get(id)?;
             let m = object.placement.now();
             all.vector("Position", placement::translation(m));
-            all.vector("Rotation", placement::turn_degrees(m));
+            let own = placement::turn_degrees(m);
+            let ItemId::Object(like) = like else { return None };
+            let last = placement::turn_degrees(scene.objects.get(like)?.placement.now());
+            all.vector("Rotation", nearest(own, last, object_turn));
             all.vector("Scale", placement::scale(m));
             all.number("Opacity", object.opacity);
             all.number("Spin speed", object.spin.speed);
@@ -70,7 +77,10 @@ fn fields(scene: &Scene, id: ItemId) -> Option<Vec<(String, f64)>> {
             let camera = scene.cameras.get(id)?;
             let (pose, lens) = (camera.pose.now(), camera.lens);
             all.vector("Position", pose.eye);
-            let [yaw, pitch, roll] = placement::camera_degrees(pose).to_array();
+            let ItemId::Camera(like) = like else { return None };
+            let last = placement::camera_degrees(scene.cameras.get(like)?.pose.now());
+            let own = nearest(placement::camera_degrees(pose), last, camera_turn);
+            let [yaw, pitch, roll] = own.to_array();
             for (name, value) in [
                 ("Yaw", yaw),
                 ("Pitch", pitch),
