@@ -152,7 +152,7 @@ impl SuiteScene {
     /// Returns the command that repeats the measurement.
     fn command(&self, detail: &SuiteDetail) -> String {
         let Size { width, height } = detail.size;
-        // The names of the suite each stand for a detail; the size is independent of it.
+        // A name of the suite means a detail; the size is independent of it.
         let (word, usual) = match detail.detail == SuiteDetail::TINY.detail {
             true => ("tiny", SuiteDetail::TINY.size),
             false => (self.word, SuiteDetail::WHOLE.size),

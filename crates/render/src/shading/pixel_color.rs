@@ -11,8 +11,8 @@ use marraztu_core::scene::{ItemId, LightId};
 pub struct PixelColor {
     /// The column and row, from the upper left.
     pub at: [usize; 2],
-    /// The column and row of the drawn pixel whose light is explained, if the picture was drawn at
-    /// half the size and enlarged.
+    /// The column and row of the drawn pixel, if the picture was drawn at half the size and
+    /// enlarged. Its light is explained.
     pub drawn: Option<[usize; 2]>,
     /// The visible surface; `None` for the background or a line.
     pub surface: Option<SurfacePoint>,
