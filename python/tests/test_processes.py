@@ -130,7 +130,7 @@ def test_ctrl_c_during_the_first_picture_raises_keyboard_interrupt(tmp_path):
                 time.sleep(0.01)
                 spec = getattr(sys.modules.get("numpy"), "__spec__", None)
                 loads = getattr(spec, "_initializing", True)
-            # The picture takes longer. On a busy machine, other imports may still lose the first one.
+            # The picture takes longer. On a busy machine, other imports may still lose the first.
             while not ended.wait(0.3):
                 os.kill(os.getpid(), signal.SIGINT)
 
