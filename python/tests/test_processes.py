@@ -134,6 +134,8 @@ def test_ctrl_c_during_the_first_picture_raises_keyboard_interrupt(tmp_path):
             while not ended.wait(0.3):
                 os.kill(os.getpid(), signal.SIGINT)
 
+        # A shell's background jobs ignore it.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         ended = threading.Event()
         threading.Thread(target=interrupt).start()
         try:
