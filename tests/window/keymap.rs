@@ -49,7 +49,7 @@ fn chosen_keys_are_kept() {
     let folder = tempfile::tempdir().unwrap();
     let folders = OwnFolders::within(folder.path());
     let keys = [("Redo".to_owned(), vec!["j".to_owned()])].into();
-    Preferences { keys, ..Preferences::default() }.save(&folders, &[]).unwrap();
+    Preferences { keys, ..Preferences::default() }.save(&folders, &Preferences::default()).unwrap();
     let mut editor = Editor::small();
     let (preferences, said) = Preferences::load(&folders);
     let ctx = editor.harness.ctx.clone();
@@ -69,7 +69,7 @@ fn keys_of_an_older_version_are_read_and_changes_reported_once() {
     let folders = OwnFolders::within(folder.path());
     let keys = [("ToggleStatistics", "j"), ("Duplicate", "w"), ("Gone", "k")];
     let keys = keys.map(|(action, key)| (action.to_owned(), vec![key.to_owned()])).into();
-    Preferences { keys, ..Preferences::default() }.save(&folders, &[]).unwrap();
+    Preferences { keys, ..Preferences::default() }.save(&folders, &Preferences::default()).unwrap();
     for is_first in [true, false] {
         let mut editor = Editor::small();
         let (preferences, said) = Preferences::load(&folders);

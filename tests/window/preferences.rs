@@ -35,6 +35,8 @@ fn the_palette_knows_the_words_that_people_type() {
         ("cut", "Cut"),
         ("paste", "Paste"),
         ("copy material", "Copy material"),
+        ("z-fighting", "Lesson: Why surfaces show through each other"),
+        ("jagged edges", "Lesson: Why edges are staircases"),
     ] {
         editor.press(Command(Key::K));
         type_text(&mut editor, query);
@@ -87,7 +89,7 @@ fn recent_files_that_were_cleared_do_not_come_back_from_the_disk() {
     let (_folder, path) = folder_with("cube.obj", CUBE);
     let mut first = Preferences::default();
     first.note_recent(&path);
-    first.save(&folders, &[]).unwrap();
+    first.save(&folders, &Preferences::default()).unwrap();
     let mut editor = Editor::keeping(own.path());
     assert_eq!(editor.state().recent.len(), 1);
     let ask = Preferences { recent: Vec::new(), ..first };

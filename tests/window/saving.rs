@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use egui::Key;
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::{Command, CommandShift, Lower, Named};
-use marraztu::app::actions::Request;
+use marraztu::app::actions::{LabRequest, Request};
 
 use crate::editor::Editor;
 
@@ -175,4 +175,27 @@ fn esc_after_it_has_ended_something_over_the_picture_warns() {
         assert!(!editor.leaves_by(Named(Key::Escape)), "{action:?}: it warns");
         assert!(editor.leaves_by(Named(Key::Escape)), "{action:?}");
     }
+}
+
+#[test]
+fn the_scene_of_a_lesson_is_saved_as_a_copy_and_the_users_scene_keeps_its_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let [own, copy] = ["own", "copy"].map(|name| folder.path().join(format!("{name}.marraztu")));
+    let mut editor = Editor::small();
+    editor.press(Command(Key::S));
+    editor.type_path(&own);
+    editor.wait_until(|_| own.is_file());
+    let before = std::fs::read_to_string(&own).unwrap();
+    editor.ask(Request::Lab(LabRequest::ShowLesson("depth")));
+    editor.press(Command(Key::S));
+    editor.type_path(&copy);
+    editor.wait_until(|_| copy.is_file());
+    assert!(editor.shows("Saved a copy of this lesson's scene"));
+    assert_eq!(editor.state().path, None);
+    editor.ask(Request::Lab(LabRequest::Back));
+    assert_eq!(editor.state().path.as_ref(), Some(&own));
+    editor.press(Lower(Key::X));
+    editor.press(Command(Key::S));
+    assert!(editor.state().history.is_saved());
+    assert_ne!(std::fs::read_to_string(&own).unwrap(), before);
 }

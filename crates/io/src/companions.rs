@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 use memchr::memmem;
 
 use super::error::{LoadError, shown};
-use super::locate::Locator;
+use super::locate::{Locator, of_model};
 use super::mtl::map_names;
 use super::obj::lines::{Lines, unmarked};
 use super::packed::{model_name, unpacked};
@@ -47,9 +47,9 @@ pub fn companions(path: &Path) -> Result<Vec<Companion>, LoadError> {
         found.extend(all.map(|named| (named, folders.clone())));
     }
     // Loading falls back to the MTL file with the model's name.
-    let own = format!("{}.mtl", model_name(&file));
-    let own_path = locator.locate(folder, &own);
-    found.entry((own, own_path)).or_insert(folders);
+    let stem = model_name(&file);
+    let own_path = of_model(folder, &stem, "mtl");
+    found.entry((format!("{stem}.mtl"), own_path)).or_insert(folders);
     let libraries: Vec<PathBuf> = found.keys().filter_map(|(_, path)| path.clone()).collect();
     for library in libraries {
         // An unreadable MTL file is a finding of the model, which has no further files then.

@@ -22,7 +22,7 @@ use glam::DMat4;
 
 use super::picture::sides_of;
 use super::stamp::KEYWORD;
-use marraztu_core::base::color::linear;
+use marraztu_core::base::color::linear_factors;
 use marraztu_core::base::image::Size;
 
 /// The numbers of a layer: row by row from the top, and the channels of a pixel together.
@@ -307,7 +307,7 @@ fn light(pixel: &[u8], channel: usize) -> f32 {
     if channel == 3 {
         alpha as f32
     } else {
-        (linear(f64::from(pixel[channel]) / 255.0) * alpha) as f32
+        (linear_factors()[usize::from(pixel[channel])] * alpha) as f32
     }
 }
 

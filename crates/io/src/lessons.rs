@@ -22,6 +22,8 @@ pub struct Lesson {
     pub axis: String,
     /// The question that it answers: "Why Gouraud misses a highlight".
     pub title: String,
+    /// Other words that people search for.
+    pub words: String,
     /// The reason, in a sentence.
     pub why: String,
     /// The place to look at, in a sentence.

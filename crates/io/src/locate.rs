@@ -9,6 +9,8 @@
 use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, SystemTime};
 
 use percent_encoding::percent_decode_str;
 use unicode_normalization::UnicodeNormalization;
@@ -16,11 +18,24 @@ use unicode_normalization::UnicodeNormalization;
 /// The most words of a line of names that are considered.
 const MOST_WORDS: usize = 1000;
 
+/// The names in a folder, by their [`key`].
+type Listing = BTreeMap<String, OsString>;
+
+/// Listings for the next locators, each with the time of the last change of its folder: thousands of
+/// models in one folder would list it thousands of times.
+static KEPT: Mutex<BTreeMap<PathBuf, (SystemTime, Arc<Listing>)>> = Mutex::new(BTreeMap::new());
+
+/// The most listings that are kept.
+const MOST_KEPT: usize = 16;
+
+/// File systems store times in steps of up to two seconds, so a listing is kept only if the last
+/// change of its folder was earlier.
+const SETTLED: Duration = Duration::from_secs(3);
+
 /// Searches for files, and caches the content of folders.
 #[derive(Debug, Default)]
 pub(super) struct Locator {
-    /// The names in a folder, by their [`key`].
-    listings: BTreeMap<PathBuf, BTreeMap<String, OsString>>,
+    listings: BTreeMap<PathBuf, Arc<Listing>>,
 }
 
 impl Locator {
@@ -68,19 +83,9 @@ impl Locator {
         path.is_file().then_some(path)
     }
 
-    /// Lists the names in a folder by their [`key`]; among equal keys the first name wins.
-    fn listing(&mut self, folder: &Path) -> &BTreeMap<String, OsString> {
-        self.listings.entry(folder.to_owned()).or_insert_with(|| {
-            let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-            let entries = std::fs::read_dir(here).into_iter().flatten();
-            let mut names: Vec<_> =
-                entries.filter_map(|entry| Some(entry.ok()?.file_name())).collect();
-            // The entries of a folder have no reliable order. They are inserted in reverse order of
-            // their names, so the first name overwrites the others.
-            names.sort();
-            names.reverse();
-            names.into_iter().map(|name| (key(&name.to_string_lossy()), name)).collect()
-        })
+    /// Lists a folder at its first use.
+    fn listing(&mut self, folder: &Path) -> &Listing {
+        self.listings.entry(folder.to_owned()).or_insert_with(|| kept_listing(folder))
     }
 
     /// Finds the files that a line of names refers to. Names are separated by blanks and may
@@ -120,6 +125,53 @@ impl Locator {
     }
 }
 
+/// Finds the file with the name of a model, in the usual spellings only, since every model of a
+/// folder searches for several.
+pub(super) fn of_model(folder: &Path, stem: &str, ending: &str) -> Option<PathBuf> {
+    let (lower, upper) = (stem.to_lowercase(), stem.to_uppercase());
+    let loud = ending.to_uppercase();
+    [(stem, ending), (stem, &loud), (&lower, ending), (&upper, &loud)]
+        .map(|(stem, ending)| folder.join(format!("{stem}.{ending}")))
+        .into_iter()
+        .find(|path| path.is_file())
+}
+
+/// Returns the kept listing of a folder, or lists the folder if it may have changed.
+fn kept_listing(folder: &Path) -> Arc<Listing> {
+    let here = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let changed = here.metadata().and_then(|data| data.modified()).ok();
+    let settled =
+        changed.filter(|changed| changed.elapsed().is_ok_and(|elapsed| elapsed > SETTLED));
+    let (Some(settled), Ok(place)) = (settled, std::path::absolute(here)) else {
+        return Arc::new(listing(here));
+    };
+    let kept = || KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, names)) = kept().get(&place).filter(|(changed, _)| *changed == settled) {
+        return names.clone();
+    }
+    let names = Arc::new(listing(here));
+    let mut kept = kept();
+    if kept.len() >= MOST_KEPT {
+        kept.clear();
+    }
+    kept.insert(place, (settled, names.clone()));
+    names
+}
+
+/// Lists the names in a folder; among equal keys the first name wins, as the entries of a folder
+/// have no reliable order.
+fn listing(folder: &Path) -> Listing {
+    let mut listing = Listing::new();
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let kept = listing.entry(key(&name.to_string_lossy())).or_insert_with(|| name.clone());
+        if name < *kept {
+            *kept = name;
+        }
+    }
+    listing
+}
+
 /// Returns a name with slashes, without the quotation marks that some programs add.
 pub(super) fn plain(name: &str) -> String {
     let name = name.trim();
@@ -133,7 +185,10 @@ pub(super) fn plain(name: &str) -> String {
 
 /// Returns a name in lower case and NFC, for comparisons.
 fn key(name: &str) -> String {
-    name.to_lowercase().nfc().collect()
+    match name.is_ascii() {
+        true => name.to_ascii_lowercase(),
+        false => name.to_lowercase().nfc().collect(),
+    }
 }
 
 /// Returns other spellings of a name: with escaped blanks and with percent-encoding resolved.
@@ -177,6 +232,29 @@ mod tests {
         for name in ["my_wood.png", "%zz.png", "", "%2e%2e"] {
             assert_eq!(locator.locate(folder.path(), name), None, "{name}");
         }
+    }
+
+    /// Windows opens no folders as files.
+    #[cfg(unix)]
+    #[test]
+    fn a_kept_listing_is_of_no_use_once_its_folder_changes() {
+        let folder = tempfile::tempdir().unwrap();
+        let found = |name: &str| Locator::default().locate(folder.path(), name).is_some();
+        let settle = |seconds| {
+            let then = SystemTime::now() - Duration::from_secs(seconds);
+            std::fs::File::open(folder.path()).unwrap().set_modified(then).unwrap();
+        };
+        std::fs::write(folder.path().join("Wood.png"), "").unwrap();
+        settle(20);
+        assert!(found("WOOD.PNG") && !found("OAK.PNG"));
+        std::fs::write(folder.path().join("Oak.png"), "").unwrap();
+        assert!(found("OAK.PNG"));
+        std::fs::write(folder.path().join("Pine.png"), "").unwrap();
+        assert!(found("PINE.PNG"));
+        settle(20);
+        assert!(found("PINE.PNG"));
+        std::fs::remove_file(folder.path().join("Pine.png")).unwrap();
+        assert!(!found("PINE.PNG"));
     }
 
     #[test]

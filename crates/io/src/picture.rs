@@ -10,7 +10,7 @@ use std::path::Path;
 
 use image::codecs::jpeg::JpegEncoder;
 use image::codecs::webp::WebPEncoder;
-use image::{ExtendedColorType, GenericImageView, ImageEncoder, Rgb};
+use image::{ExtendedColorType, GenericImageView, ImageEncoder, ImageError, Rgb};
 
 use super::replace::{SaveError, Worth, check_target, replace, replace_by};
 use marraztu_core::base::image::{Picture, Size};
@@ -60,7 +60,7 @@ pub static PICTURE_FORMATS: &[PictureFormat] = &[
         has_alpha: false,
         encode: |picture, to| {
             let mut encoder = JpegEncoder::new_with_quality(to, JPEG_QUALITY);
-            encoder.encode_image(&Opaque(picture)).map_err(std::io::Error::other)
+            encoder.encode_image(&Opaque(picture)).map_err(cause)
         },
         stream: None,
     },
@@ -75,7 +75,7 @@ pub static PICTURE_FORMATS: &[PictureFormat] = &[
                 false => (Cow::Owned(opaque_bytes(picture.pixels())), ExtendedColorType::Rgb8),
             };
             let written = WebPEncoder::new_lossless(to).write_image(&bytes, width, height, kind);
-            written.map_err(std::io::Error::other)
+            written.map_err(cause)
         },
         stream: None,
     },
@@ -327,7 +327,26 @@ fn write_png_with(
     stream_png(&Header { size, has_alpha, text }, &mut |put| put(picture), to)
 }
 
+/// Returns the error of the file that an encoder of `image` passes on.
+fn cause(error: ImageError) -> std::io::Error {
+    match error {
+        ImageError::IoError(error) => error,
+        error => std::io::Error::other(error),
+    }
+}
+
 fn stream_png(header: &Header<'_>, rows: &mut Rows<'_>, to: &mut dyn Write) -> std::io::Result<()> {
+    encode_png(header, rows, to).map_err(|error| match error {
+        png::EncodingError::IoError(error) => error,
+        error => error.into(),
+    })
+}
+
+fn encode_png(
+    header: &Header<'_>,
+    rows: &mut Rows<'_>,
+    to: &mut dyn Write,
+) -> Result<(), png::EncodingError> {
     let [width, height] = sides_of(header.size);
     let mut encoder = png::Encoder::new(to, width, height);
     encoder.set_color(if header.has_alpha { png::ColorType::Rgba } else { png::ColorType::Rgb });
@@ -349,8 +368,7 @@ fn stream_png(header: &Header<'_>, rows: &mut Rows<'_>, to: &mut dyn Write) -> s
         )
     })?;
     stream.finish()?;
-    writer.finish()?;
-    Ok(())
+    writer.finish()
 }
 
 fn stream_ppm(header: &Header<'_>, rows: &mut Rows<'_>, to: &mut dyn Write) -> std::io::Result<()> {
@@ -469,5 +487,22 @@ mod tests {
             assert!(save_bands(&folder.path().join("b.png"), size, false, fails).is_err());
         }
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), PICTURE_FORMATS.len());
+    }
+
+    #[test]
+    fn every_format_passes_on_that_the_disk_is_full() {
+        struct Full;
+        impl Write for Full {
+            fn write(&mut self, _: &[u8]) -> std::io::Result<usize> {
+                Err(std::io::ErrorKind::StorageFull.into())
+            }
+            fn flush(&mut self) -> std::io::Result<()> {
+                Ok(())
+            }
+        }
+        for format in PICTURE_FORMATS {
+            let error = (format.encode)(&picture(7), &mut Full).unwrap_err();
+            assert_eq!(error.kind(), std::io::ErrorKind::StorageFull, "{}", format.name);
+        }
     }
 }

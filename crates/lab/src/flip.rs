@@ -11,7 +11,7 @@
 use libm::{ceil, exp, pow, sqrt};
 use rayon::prelude::*;
 
-use marraztu_core::base::color::linear;
+use marraztu_core::base::color::linear_factors;
 use marraztu_core::base::image::{Picture, Size};
 
 /// Pixels per degree: 0.7 (3840 / 0.7) (pi / 180).
@@ -98,7 +98,7 @@ fn times(m: [[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
 
 /// Converts a pixel to Y C_x C_z, a linear relative of CIELAB.
 fn opponent(pixel: [u8; 4]) -> [f64; 3] {
-    let [r, g, b, _] = pixel.map(|byte| linear(f64::from(byte) / 255.0));
+    let [r, g, b, _] = pixel.map(|byte| linear_factors()[usize::from(byte)]);
     let [x, y, z] = relative(times(XYZ_FROM_RGB, [r, g, b]));
     [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
 }

@@ -11,10 +11,9 @@
 use super::frame::FramePlan;
 use super::frame::variants::Decoding;
 use super::plan::plan_frame;
-use super::texture::sample::linear_factors;
 use super::{Cancelled, Renderer};
 use marraztu_core::accuracy::Shot;
-use marraztu_core::base::color::{Color, byte, encoded};
+use marraztu_core::base::color::{Color, byte, encoded, linear_factors};
 use marraztu_core::base::image::Picture;
 
 /// Renders a picture with a transparent background; colours are not premultiplied.

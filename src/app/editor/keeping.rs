@@ -5,6 +5,7 @@
 //! which blocks nothing.
 
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, SystemTime};
 
 use egui::Context;
@@ -34,12 +35,11 @@ pub(crate) struct Keeping {
     settled: Vec<PathBuf>,
     /// Discarded work, in the order of [`State::discarded`].
     discarded: Vec<Discarded>,
-    /// The preferences as last written.
+    /// The preferences that were last handed to be written.
     preferences: Preferences,
-    /// The recent files that this program has read or written. A file on disk with these entries
-    /// adds none of them again.
-    known: Vec<PathBuf>,
-    /// The current preferences if they differ from the last written, and the time since then.
+    /// The preferences that were last read or written.
+    written: Arc<Mutex<Preferences>>,
+    /// The current preferences if they differ from `preferences`, and the time since then.
     changed: Option<(Preferences, f64)>,
 }
 
@@ -79,7 +79,7 @@ impl App {
             offered,
             settled: Vec::new(),
             discarded: Vec::new(),
-            known: preferences.recent.clone(),
+            written: Arc::new(Mutex::new(preferences.clone())),
             preferences,
             changed: None,
         });
@@ -144,7 +144,8 @@ impl App {
             keeping.preferences = changed;
         }
         // Failure cannot be reported, as the window is gone.
-        let _ = keeping.preferences.save(&keeping.folders, &keeping.known);
+        let before = keeping.written.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        let _ = keeping.preferences.save(&keeping.folders, &before);
         if (self.leaving || self.is_all_saved())
             && let Some(journal) = keeping.journal
         {
@@ -278,13 +279,15 @@ impl App {
 
 impl Keeping {
     /// Writes the preferences on a thread, so the window does not wait.
-    fn write_preferences(&mut self) {
+    fn write_preferences(&self) {
         let (preferences, folders) = (self.preferences.clone(), self.folders.clone());
-        let known = self.known.clone();
-        self.known.extend_from_slice(&preferences.recent);
+        let written = self.written.clone();
         let write = move || {
+            let mut written = written.lock().unwrap_or_else(PoisonError::into_inner);
             // A failure here is repaired by writing the preferences at the end.
-            let _ = preferences.save(&folders, &known);
+            if preferences.save(&folders, &written).is_ok() {
+                *written = preferences;
+            }
         };
         if cfg!(target_family = "wasm") {
             return write();

@@ -68,14 +68,21 @@ impl App {
     fn write_scene(&mut self, ctx: &Context, path: PathBuf, after: Option<After>) {
         let State { scene, view, settings, .. } = &self.state;
         let window = self.state.window();
-        match io::save_with_window(&path, scene, view, settings, &window) {
-            Ok(content) => self.state.content = Some(content),
+        let content = match io::save_with_window(&path, scene, view, settings, &window) {
+            Ok(content) => content,
             Err(error) => return self.dialogs.tell_fault(format!("{error}.")),
-        }
-        self.state.history.mark_saved();
+        };
         self.state.tell_saved(&path);
         self.note_recent(&path);
-        self.state.path = Some(path);
+        if self.waiting_scene.is_some() {
+            // A lesson's scene is dropped with its later changes, so it has no file of its own.
+            let text = format!("Saved a copy of this lesson's scene: {}", path.display());
+            self.state.tell(Some(text));
+        } else {
+            self.state.history.mark_saved();
+            self.state.content = Some(content);
+            self.state.path = Some(path);
+        }
         if let Some(after) = after {
             self.after(ctx, after);
         }

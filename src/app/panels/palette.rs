@@ -282,7 +282,7 @@ fn colors(
 
 fn settings(state: &State, search: &mut Search, entries: &mut Vec<Entry>) {
     let now = state.settings;
-    let mut add = |label: String, words, kind, hint: &str, on, request| {
+    let mut add = |label: String, words: &str, kind, hint: &str, on, request| {
         if let Some(score) = search.score(Texts { label: &label, words, hint }) {
             let (hint, key, refused) = (hint.to_owned(), String::new(), None);
             entries.push(Entry { label, kind, hint, key, on, refused, score, request });
@@ -304,7 +304,8 @@ fn settings(state: &State, search: &mut Search, entries: &mut Vec<Entry>) {
     for lesson in lessons() {
         let show = Request::Lab(LabRequest::ShowLesson(&lesson.axis));
         let label = format!("Lesson: {}", lesson.title);
-        add(label, "learn help", "Lesson", &lesson.why, false, show);
+        let words = format!("learn help {}", lesson.words);
+        add(label, &words, "Lesson", &lesson.why, false, show);
     }
     for example in EXAMPLES {
         let open = Request::LoadFiles(vec![example.path.into()]);

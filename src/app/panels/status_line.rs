@@ -308,11 +308,12 @@ fn fitted(parts: &[String], fits: impl Fn(&str) -> bool) -> String {
     parts.first().cloned().unwrap_or_default()
 }
 
-/// Elides the middle of `name` if it has more than `longest` letters.
+/// Elides the middle of `name` if it has more than `longest` letters. Line breaks become blanks.
 pub(crate) fn middle_elided(name: &str, longest: usize) -> String {
-    let letters: Vec<char> = name.chars().collect();
+    let shown = |letter: char| if letter.is_control() { ' ' } else { letter };
+    let letters: Vec<char> = name.chars().map(shown).collect();
     if letters.len() <= longest {
-        return name.to_owned();
+        return letters.into_iter().collect();
     }
     let kept = longest.saturating_sub(3);
     let (head, tail) = (kept.div_ceil(2), kept / 2);
@@ -328,6 +329,7 @@ mod tests {
     #[test]
     fn a_long_name_keeps_its_beginning_and_its_end() {
         assert_eq!(middle_elided("teapot", 10), "teapot");
+        assert_eq!(middle_elided("tea\npot", 10), "tea pot");
         assert_eq!(middle_elided("a_very_long_name_2", 10), "a_ve...e_2");
     }
 

@@ -4,7 +4,11 @@
 //! without a transfer curve. The exception is light computed in linear sRGB: [`linear`] then
 //! decodes colours, and [`encoded`] encodes pictures.
 
+use std::sync::OnceLock;
+
 use serde::{Deserialize, Serialize};
+
+use super::once::get_or_compute;
 
 /// Red, green and blue, each from 0 to 255.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -71,6 +75,12 @@ pub fn byte(factor: f64) -> u8 {
 pub fn linear(stored: f64) -> f64 {
     let stored = stored.max(0.0);
     if stored <= 0.04045 { stored / 12.92 } else { libm::pow((stored + 0.055) / 1.055, 2.4) }
+}
+
+/// Returns the [`linear`] value of each byte, from 0 to 1.
+pub fn linear_factors() -> &'static [f64; 256] {
+    static TABLE: OnceLock<[f64; 256]> = OnceLock::new();
+    get_or_compute(&TABLE, || std::array::from_fn(|byte| linear(byte as f64 / 255.0)))
 }
 
 /// Encodes a linear value as an sRGB colour: the inverse of [`linear`].

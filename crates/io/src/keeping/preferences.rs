@@ -138,30 +138,46 @@ impl Preferences {
         }
     }
 
-    /// Writes the preferences atomically. Recent files that another program has added meanwhile
-    /// stay: these are in the file, but not `known` to this program.
+    /// Writes the preferences atomically. Settings that are as `before`, when this program last read
+    /// or wrote them, keep the values in the file: another program may have changed them meanwhile.
     ///
     /// # Errors
     /// The reason, if they cannot be written.
-    pub fn save(&self, folders: &OwnFolders, known: &[PathBuf]) -> Result<(), String> {
+    pub fn save(&self, folders: &OwnFolders, before: &Self) -> Result<(), String> {
         made(&folders.config)?;
         let path = file(folders);
         // The lock makes reading and writing one step among several programs.
         let lock = Lock::take(&folders.config.join("lock")).map_err(|error| reason(&error))?;
         let others = fs::read_to_string(&path).ok();
         let others = others.and_then(|text| ron::from_str::<Self>(&text).ok());
-        let mut merged = self.clone();
-        for other in others.into_iter().flat_map(|other| other.recent) {
-            if !merged.recent.contains(&other) && !known.contains(&other) {
-                merged.recent.push(other);
-            }
-        }
-        merged.recent.truncate(MOST_RECENT);
+        let merged = others.map_or_else(|| self.clone(), |others| self.merged(before, others));
         let config = ron::ser::PrettyConfig::new().new_line("\n");
         let text = ron::ser::to_string_pretty(&merged, config).map_err(|e| e.to_string())?;
         replace(&path, (text + "\n").as_bytes(), Worth::Journal).map_err(|e| e.to_string())?;
         drop(lock);
         Ok(())
+    }
+
+    /// Merges these preferences with those of others, given the state before both.
+    fn merged(&self, before: &Self, others: Self) -> Self {
+        // New recent files go to the front, those of this program first.
+        let is_new = |path: &&PathBuf| !before.recent.contains(path);
+        let (new, old): (Vec<_>, Vec<_>) = self.recent.iter().partition(is_new);
+        let theirs = others.recent.iter().filter(is_new).filter(|path| !self.recent.contains(path));
+        let recent = new.into_iter().chain(theirs).chain(old).take(MOST_RECENT).cloned().collect();
+        macro_rules! merge {
+            ($($field:ident)+) => {
+                Self {
+                    $($field: match self.$field == before.$field {
+                        true => others.$field,
+                        false => self.$field.clone(),
+                    },)+
+                    recent,
+                }
+            };
+        }
+        merge!(theme panels gizmo scale window maximized shares overlays dial helpers watches up keys
+            refines refined budget_ms)
     }
 
     /// Moves a file to the front of the recent ones.
@@ -218,7 +234,7 @@ mod tests {
         first.note_recent(Path::new("/a.obj"));
         first.note_recent(Path::new("/b.obj"));
         first.note_recent(Path::new("/a.obj"));
-        first.save(&folders, &[]).unwrap();
+        first.save(&folders, &Preferences::default()).unwrap();
         assert_eq!(first.recent, absolute(["/a.obj", "/b.obj"]));
         assert_eq!(Preferences::load(&folders), (first, None));
         for broken in [&b"(scale: "[..], b"\xff\xfe", b"(scale: 1.0) more"] {
@@ -245,13 +261,34 @@ mod tests {
         for name in ["/a.obj", "/b.obj"] {
             let mut own = Preferences::default();
             own.note_recent(Path::new(name));
-            own.save(&folders, &[]).unwrap();
+            own.save(&folders, &Preferences::default()).unwrap();
         }
         let both = absolute(["/b.obj", "/a.obj"]);
         assert_eq!(Preferences::load(&folders).0.recent, both);
         // A program that clears its list of recent files removes only its own.
-        let known = absolute(["/a.obj"]);
-        Preferences::default().save(&folders, &known).unwrap();
+        let before = Preferences { recent: both[1..].to_vec(), ..Preferences::default() };
+        Preferences::default().save(&folders, &before).unwrap();
         assert_eq!(Preferences::load(&folders).0.recent, both[..1]);
+    }
+
+    #[test]
+    fn a_program_keeps_the_settings_that_another_one_has_changed() {
+        let folder = tempfile::tempdir().unwrap();
+        let folders = OwnFolders::within(folder.path());
+        let named = |number: usize| absolute([&format!("/{number}.obj")])[0].clone();
+        let recent: Vec<_> = (0..MOST_RECENT).map(named).collect();
+        let before = Preferences { recent, ..Preferences::default() };
+        before.save(&folders, &Preferences::default()).unwrap();
+        let mut other = Preferences { theme: Theme::Light, scale: 2.0, ..before.clone() };
+        other.note_recent(&named(77));
+        other.save(&folders, &before).unwrap();
+        // This one has opened a file of the list, and changed the scale only.
+        let mut own = Preferences { scale: 1.5, ..before.clone() };
+        own.note_recent(&named(3));
+        own.save(&folders, &before).unwrap();
+        let (merged, _) = Preferences::load(&folders);
+        assert_eq!((merged.theme, merged.scale), (Theme::Light, 1.5));
+        let expected = [77, 3, 0, 1, 2, 4, 5, 6, 7, 8].map(named);
+        assert_eq!(merged.recent, expected);
     }
 }

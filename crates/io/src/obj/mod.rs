@@ -39,6 +39,7 @@ use self::parts::NamedPart;
 use self::sound::FaceRuns;
 use super::error::{LoadError, short_name, shown};
 use super::findings::{Finding, FindingKind, Findings, joined};
+use super::locate::of_model;
 use super::mtl::Library;
 use super::packed::{Unpacked, model_name, unpacked, unpacked_name};
 use super::progress::Progress;
@@ -296,15 +297,13 @@ fn own_library(
     let folder = path.parent().unwrap_or(Path::new(""));
     let shown = shown(path);
     let stem = model_name(&shown);
-    let own = |library: &mut Library<'_>, ending: &str| {
-        library.locator.locate(folder, &format!("{stem}.{ending}"))
-    };
+    let own = |ending: &str| of_model(folder, &stem, ending);
     let has_library = !content.libraries.is_empty() && missing.is_empty();
-    let mtl = if has_library { None } else { own(library, "mtl") };
+    let mtl = if has_library { None } else { own("mtl") };
     // Without such an MTL file, a picture of that name is worth a note.
     let Some(mtl) = mtl.filter(|mtl| !library.has_read(mtl)) else {
         if content.libraries.is_empty()
-            && let Some(picture) = texture_endings().into_iter().find_map(|it| own(library, it))
+            && let Some(picture) = texture_endings().into_iter().find_map(own)
         {
             findings.add(FindingKind::PictureUnnamed, &short_name(&picture), None);
         }

@@ -20,8 +20,8 @@ impl Cover {
     /// Returns the cover of a part.
     ///
     /// If all texels of a texture, or of an opacity map, are fully opaque or fully transparent, it
-    /// is a stencil: it cuts holes, as with [`Transparency::Threshold`], regardless of how its
-    /// edges are filtered.
+    /// is a stencil on a part of opacity 1: it cuts holes, as with [`Transparency::Threshold`],
+    /// regardless of how its edges are filtered.
     pub(super) fn of(look: &PartLook<'_>, textured: bool, transparency: Transparency) -> Self {
         // NaN counts as opaque.
         let opacity = if look.opacity < 1.0 { look.opacity.max(0.0) } else { 1.0 };

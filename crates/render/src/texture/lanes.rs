@@ -10,10 +10,11 @@ use fearless_simd::{
 };
 
 use self::mip_level::{Footprint, ManyAround, MipLevel};
-use super::sample::{brightness, linear_factors};
+use super::sample::brightness;
 use crate::lights::{Rows, load, store};
 use crate::simd::{BATCH, Lanes as _, Real, Sixteen, Vec3, log2};
 use marraztu_core::accuracy::Filter;
+use marraztu_core::base::color::linear_factors;
 use marraztu_core::base::once::get_or_compute;
 use marraztu_core::scene::{Texture, Wrap};
 

@@ -10,12 +10,12 @@
 //! specification, 8.14.1. The anisotropic filter follows `EXT_texture_filter_anisotropic`.
 
 use super::lanes::MOST_PROBES;
-use super::sample::{linear_factors, sample_as};
+use super::sample::sample_as;
 use crate::frame::variants::Decoding;
 use crate::simd::Number;
 use marraztu_core::accuracy::Filter;
 use marraztu_core::base::Shared;
-use marraztu_core::base::color::{byte, encoded};
+use marraztu_core::base::color::{byte, encoded, linear_factors};
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::Texture;
 

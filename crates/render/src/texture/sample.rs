@@ -1,12 +1,9 @@
 //! Samples textures at one point. Texels are bytes / 255; (0, 0) is the lower left corner.
 
-use std::sync::OnceLock;
-
 use crate::frame::variants::Decoding;
 use crate::simd::{Number, Real, Vec3};
 use marraztu_core::accuracy::Filter;
-use marraztu_core::base::color::linear;
-use marraztu_core::base::once::get_or_compute;
+use marraztu_core::base::color::linear_factors;
 use marraztu_core::scene::{Texture, Wrap};
 
 /// Samples red, green, blue and alpha at `uv`, as factors.
@@ -90,12 +87,6 @@ const FACTORS: [f64; 256] = {
     }
     factors
 };
-
-/// Returns the linear value of each byte, from 0 to 1.
-pub(crate) fn linear_factors() -> &'static [f64; 256] {
-    static TABLE: OnceLock<[f64; 256]> = OnceLock::new();
-    get_or_compute(&TABLE, || FACTORS.map(linear))
-}
 
 /// Computes the brightness of a colour, with the weights of ITU-R BT.709. The brightness of a grey
 /// is exactly its value.
