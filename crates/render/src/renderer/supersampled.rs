@@ -3,7 +3,8 @@
 //! The picture is drawn 16 times as wide and high, with one sample per pixel, and each square of 16
 //! x 16 pixels is averaged. Textures are therefore filtered for a sample, not for a whole pixel,
 //! and thin lines keep their width. The larger picture is drawn window by window, which bounds its
-//! memory and lets a caller draw only a part.
+//! memory and lets a caller draw only a part. Its colours are bytes, so a mean is up to half a step
+//! off before it is rounded.
 
 use rayon::prelude::*;
 

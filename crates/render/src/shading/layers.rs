@@ -130,7 +130,7 @@ impl<T: ShadingNumber> Shader<T> {
                 Visible::Triangle(_) => {}
                 #[expect(clippy::cast_possible_truncation, reason = "the lower half is meant")]
                 Visible::Line(_) | Visible::Background => {
-                    add_other(context, !(*word as u32), place, 1, sums);
+                    add_other(context, seen(*word), place, 1, sums);
                 }
             }
         }

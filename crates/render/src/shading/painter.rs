@@ -331,25 +331,6 @@ impl<T: ShadingNumber> Painter<T> {
         shows
     }
 
-    /// Adds the colours of a visible tile drawn for one sample of each pixel.
-    fn add_picture(
-        &mut self,
-        context: &ShadingContext<'_, T>,
-        bounds: PixelBox,
-        to: &mut [BlockPasses],
-    ) {
-        // A pass of one sample is painted like a picture; then its bytes are summed.
-        let mut pixels = std::mem::take(&mut self.pixels);
-        let mut canvas = Canvas { pixels: &mut pixels[..], stride: TILE_SIDE };
-        self.blocks(context, bounds, &mut canvas, (0, false));
-        for (block, to) in to.iter_mut().enumerate() {
-            let rows = canvas.pixels[canvas.offset(corner_in_tile(block))..].chunks(TILE_SIDE);
-            let own = rows.take(ROW).flat_map(|row| &row[..ROW]);
-            own.enumerate().for_each(|(place, color)| to.sums.add(place, *color, 1));
-        }
-        self.pixels = pixels;
-    }
-
     /// Adds the colours of a tile, for four samples or one, to the sums.
     pub(crate) fn add(&mut self, context: &ShadingContext<'_, T>, tile: usize, to: &TileSums) {
         let ShadingContext { plan, frame, .. } = *context;
@@ -359,11 +340,35 @@ impl<T: ShadingNumber> Painter<T> {
         if !self.see(context, tile, bounds) {
             // A pass without primitives adds background to every pixel, and needs no sums.
             to.background += if many { ALL } else { 1 };
-        } else if many {
-            let blocks = to.blocks(plan).iter_mut().enumerate();
-            blocks.for_each(|(block, to)| self.add_block(context, block, to));
         } else {
-            self.add_picture(context, bounds, to.blocks(plan));
+            for (block, to) in to.blocks(plan).iter_mut().enumerate() {
+                match many {
+                    true => self.add_block(context, block, to),
+                    false => self.add_block_of_one(context, block, to),
+                }
+            }
+        }
+    }
+
+    /// Adds the colours of a block of one sample.
+    fn add_block_of_one(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        block: usize,
+        BlockPasses { sums, background, .. }: &mut BlockPasses,
+    ) {
+        let Self { shader, visibility, layered, .. } = self;
+        let corner = visibility.corner(block);
+        if layered.layers.touches(block) {
+            layered.add(context, (shader, visibility), (block, corner), sums);
+        } else if !visibility.shows(block) {
+            *background += 1;
+        } else if let Some(number) = visibility.whole(block) {
+            shader.fragments.list_full_block(number, corner);
+            shader.fragments.shares = [1; BATCH];
+            shader.color_group(&group_of(context, number), &mut Out::Sums(sums));
+        } else {
+            shader.add_sample(context, visibility.block(block), corner, sums);
         }
     }
 

@@ -13,7 +13,7 @@ use super::context::{ShadingContext, one_group};
 use super::interpolated::ShadingNumber;
 use super::runs::Shown;
 use super::surface::{Out, Shader};
-use crate::raster::visibility_buffer::{BACKGROUND, Planes, Visible, seen_number};
+use crate::raster::visibility_buffer::{BACKGROUND, Planes, Visible, seen, seen_number};
 use crate::screen::sample_positions::FOUR;
 use crate::screen::tiles::BLOCK_PIXELS;
 use crate::simd::{BATCH, Bits};
@@ -196,7 +196,7 @@ impl<T: ShadingNumber> Shader<T> {
         // Lines and background need no light.
         for place in Bits(unlit[0] & !shown.triangles) {
             let (number, share) = (samples.numbers[0][place], samples.shares[0][place]);
-            add_other(context, number, place, share, sums);
+            add_other(context, seen_number(number), place, share, sums);
         }
         let mut first = self.fragments.len;
         let mut color = |shader: &mut Self, sums: &mut Sums| {
@@ -220,7 +220,7 @@ impl<T: ShadingNumber> Shader<T> {
                 let share = samples.shares[sample][place];
                 if !matches!(seen_number(number), Visible::Triangle(_)) {
                     shown.lines |= u64::from(number != BACKGROUND) << place;
-                    add_other(context, number, place, share, sums);
+                    add_other(context, seen_number(number), place, share, sums);
                     continue;
                 }
                 shown.triangles |= 1 << place;
@@ -232,6 +232,24 @@ impl<T: ShadingNumber> Shader<T> {
         }
         color(self, sums);
         (shown.triangles | shown.lines) != 0
+    }
+
+    /// Adds the colours of a block with one sample of each pixel to the sums.
+    pub(crate) fn add_sample(
+        &mut self,
+        context: &ShadingContext<'_, T>,
+        entries: &[u64; BLOCK_PIXELS],
+        corner: [i32; 2],
+        sums: &mut Sums,
+    ) {
+        let shown = self.list_first(context, entries, corner);
+        for place in Bits(!shown.triangles) {
+            add_other(context, seen(entries[place]), place, 1, sums);
+        }
+        if shown.triangles != 0 {
+            self.fragments.shares = [1; BATCH];
+            self.color_fragments(context, &mut Out::Sums(sums));
+        }
     }
 
     /// Lists the pixels of a block that show triangles in their first sample. Triangles of the last
@@ -270,12 +288,12 @@ impl<T: ShadingNumber> Shader<T> {
 /// Adds the colour of a line or of the background.
 pub(super) fn add_other<T>(
     context: &ShadingContext<'_, T>,
-    number: u32,
+    visible: Visible,
     place: usize,
     share: i32,
     sums: &mut Sums,
 ) {
-    let color = match seen_number(number) {
+    let color = match visible {
         Visible::Line(line) => context.frame.line_color(context.plan, line),
         Visible::Background | Visible::Triangle(_) => context.plan.background.opaque(),
     };
