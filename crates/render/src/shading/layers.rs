@@ -128,10 +128,7 @@ impl<T: ShadingNumber> Shader<T> {
         for (place, word) in entries.iter().enumerate() {
             match seen(*word) {
                 Visible::Triangle(_) => {}
-                #[expect(clippy::cast_possible_truncation, reason = "the lower half is meant")]
-                Visible::Line(_) | Visible::Background => {
-                    add_other(context, seen(*word), place, 1, sums);
-                }
+                other => add_other(context, other, place, 1, sums),
             }
         }
     }
