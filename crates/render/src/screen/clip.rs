@@ -238,10 +238,15 @@ impl Screen {
 
     /// Clips a triangle and returns the corners of the remaining convex polygon.
     pub(crate) fn cut(&self, corners: [Clip; 3]) -> Vec<Clip> {
-        let mut polygon = corners.to_vec();
-        if !polygon.as_flattened().iter().all(|x| x.is_finite()) {
+        if !corners.as_flattened().iter().all(|x| x.is_finite()) {
             return Vec::new();
         }
+        // Most of the triangles that are not inside all planes are outside one, and need no memory.
+        let distances = corners.map(|corner| self.distances(corner));
+        if (0..6).any(|plane| distances.iter().all(|of| of[plane] < 0.0)) {
+            return Vec::new();
+        }
+        let mut polygon = corners.to_vec();
         // Sutherland and Hodgman: each plane cuts the polygon that the planes before it left.
         for plane in 0..6 {
             let inner = |corner: &Clip| self.distances(*corner)[plane];

@@ -22,6 +22,12 @@ const DOUBLE: f64 = 1.0 / (1_u64 << 47) as f64;
 /// contribution of a smaller one is below every pad.
 const LEAST: f64 = 1e-30;
 
+/// Returns the pad of boxes in world space, for coordinates up to `far`.
+#[expect(clippy::cast_possible_truncation, reason = "rounded up")]
+pub(super) fn world_pad(far: f64) -> [f32; 3] {
+    [((far * (SINGLE + 2.0 * DOUBLE)) as f32).next_up(); 3]
+}
+
 impl LocalRays {
     /// Transforms rays to the space of an object with these bounds. `reach` is the largest
     /// coordinate of both in world space.

@@ -122,6 +122,8 @@ pub(crate) struct RayScratch {
     pub(crate) origins: Origins,
     pub(super) local: LocalRays,
     pub(super) shaft: Shaft,
+    /// The shaft of each patch in world space, if there are many casters.
+    pub(super) around_patches: Vec<Shaft>,
     pub(super) prepared: PreparedBlock,
     /// Nodes and leaves that are still to be visited, with the rays that reach them.
     pub(super) stack: Vec<(BvhChild, u64)>,

@@ -1,16 +1,19 @@
 //! Traces packets of shadow rays through all casters of a frame.
 
+use std::collections::BTreeMap;
+
 use crate::accel::Accelerated as _;
 use fearless_simd::{Level, Simd};
 use glam::{DMat4, DVec3};
 
+use super::boxes::world_pad;
 use super::known::{KnownLight, KnownShadows};
 use super::map_face::LightMap;
 use super::maps::ShadowMaps;
 use super::patches::Patch;
 use super::prepared_block::PreparedBlock;
 use super::rays::{Origins, RayCount, RayScratch};
-use super::shaft::Around;
+use super::shaft::{Around, Shaft};
 use super::triangle::{Corners, FLAT, Prepared, is_between, reaches_behind};
 use crate::accel::{BVH_BLOCK, Bvh, BvhBlock, BvhChild, BvhNode};
 use crate::frame::FramePlan;
@@ -25,12 +28,17 @@ use marraztu_core::scene::{Bounds, dvec3};
 /// The distance of a sun, relative to the largest coordinate of the scene.
 const SUN: f64 = (1_u64 << 60) as f64;
 
+/// Up to this number of casters, shafts in world space do not pay.
+const FEW: usize = 8;
+
 /// The casters of a frame, ready for ray tracing.
 #[derive(Debug)]
 pub(crate) struct Tracer<'a> {
     casters: Vec<InPlace<'a>>,
     /// The caster of each draw.
     of_draws: Vec<Option<u32>>,
+    /// The largest coordinate of their boxes.
+    reach: f64,
     /// The end point of the rays to each light, if it casts shadows.
     lights: Vec<Option<DVec3>>,
     /// The shadow map of each light, if the settings ask for maps.
@@ -52,6 +60,8 @@ struct InPlace<'a> {
     /// The bounding box in world space.
     low: DVec3,
     high: DVec3,
+    /// `low` and `high`, rounded outwards.
+    rounded: [[f32; 3]; 2],
     /// The distance in world space within which its triangles lie in one plane.
     flat: f64,
     is_solid: bool,
@@ -73,9 +83,10 @@ impl<'a> Tracer<'a> {
         let mut tracer = Self::of(&plan.shadows, plan.filter, plan.variants.shadow_method);
         let map = |source: &Option<ShadowSource>| source.as_ref().and_then(|own| maps.of(own));
         tracer.maps = plan.shadows.sources.iter().map(map).collect();
-        let of_draw = |item| tracer.casters.iter().position(|placed| placed.caster.item == item);
-        let index = |at: usize| u32::try_from(at).expect("fewer than 2^32 objects");
-        let of_draws = plan.draws.iter().map(|draw| of_draw(draw.item).map(index)).collect();
+        let numbered = (0_u32..).zip(&tracer.casters);
+        let of_items: BTreeMap<_, _> =
+            numbered.map(|(index, placed)| (placed.caster.item, index)).collect();
+        let of_draws = plan.draws.iter().map(|draw| of_items.get(&draw.item).copied()).collect();
         Some(Self { of_draws, ..tracer })
     }
 
@@ -91,6 +102,7 @@ impl<'a> Tracer<'a> {
         let in_place = |caster| InPlace::new(caster, method);
         let casters: Vec<InPlace<'a>> = shadows.casters.iter().filter_map(in_place).collect();
         let far = sun_distance(&casters);
+        let reach = casters.iter().map(InPlace::reach).fold(0.0, f64::max);
         let end = |source: &ShadowSource| match source {
             ShadowSource::Direction(towards) => *towards * far,
             // A light farther away than a sun is treated as one.
@@ -99,7 +111,7 @@ impl<'a> Tracer<'a> {
             }
         };
         let lights = shadows.sources.iter().map(|source| source.as_ref().map(end)).collect();
-        Self { casters, of_draws: Vec::new(), lights, maps: Vec::new(), known: None, filter }
+        Self { casters, reach, of_draws: Vec::new(), lights, maps: Vec::new(), known: None, filter }
     }
 
     /// Returns the end point of the rays to a light, if it casts shadows.
@@ -156,6 +168,16 @@ impl<'a> Tracer<'a> {
         if scratch.origins.patches.is_empty() {
             scratch.origins.find_patches(|origins, i| self.normal_at(origins, i));
         }
+        // Most of many casters are far from the rays, and are skipped before rays are transformed.
+        scratch.around_patches.clear();
+        if self.casters.len() > FEW {
+            for patch in &scratch.origins.patches {
+                let far = self.reach + patch.around.farthest();
+                let mut shaft = Shaft::default();
+                shaft.set(&DMat4::IDENTITY, (&patch.around, light), (far, world_pad(far)));
+                scratch.around_patches.push(shaft);
+            }
+        }
         // A blocked ray leaves the packet, so later casters see fewer rays.
         let mut alive = mask;
         for (index, placed) in (0_u32..).zip(&self.casters) {
@@ -195,6 +217,10 @@ impl<'a> Tracer<'a> {
             let (low, high) = (from.min(light), to.max(light));
             let is_beside = placed.low.cmpgt(high).any() || placed.high.cmplt(low).any();
             if is_beside || points & mask == 0 {
+                continue;
+            }
+            let [low, high] = &placed.rounded;
+            if scratch.around_patches.get(i).is_some_and(|shaft| shaft.misses(simd, low, high)) {
                 continue;
             }
             let RayScratch { origins, local, shaft, stack, .. } = &mut *scratch;
@@ -421,6 +447,10 @@ impl<'a> InPlace<'a> {
             own,
             low,
             high,
+            rounded: [
+                low.as_vec3().to_array().map(f32::next_down),
+                high.as_vec3().to_array().map(f32::next_up),
+            ],
             flat,
             is_solid: caster.is_solid(),
         })
