@@ -21,8 +21,8 @@ const MOST_WORDS: usize = 1000;
 /// The names in a folder, by their [`key`].
 type Listing = BTreeMap<String, OsString>;
 
-/// Listings for the next locators, each with the time of the last change of its folder: thousands of
-/// models in one folder would list it thousands of times.
+/// Listings for the next locators, each with the time of the last change of its folder: thousands
+/// of models in one folder would list it thousands of times.
 static KEPT: Mutex<BTreeMap<PathBuf, (SystemTime, Arc<Listing>)>> = Mutex::new(BTreeMap::new());
 
 /// The most listings that are kept.

@@ -138,8 +138,9 @@ impl Preferences {
         }
     }
 
-    /// Writes the preferences atomically. Settings that are as `before`, when this program last read
-    /// or wrote them, keep the values in the file: another program may have changed them meanwhile.
+    /// Writes the preferences atomically. Settings that are as `before`, when this program last
+    /// read or wrote them, keep the values in the file: another program may have changed them
+    /// meanwhile.
     ///
     /// # Errors
     /// The reason, if they cannot be written.
@@ -176,8 +177,10 @@ impl Preferences {
                 }
             };
         }
-        merge!(theme panels gizmo scale window maximized shares overlays dial helpers watches up keys
-            refines refined budget_ms)
+        merge!(
+            theme panels gizmo scale window maximized shares overlays dial helpers watches up keys
+            refines refined budget_ms
+        )
     }
 
     /// Moves a file to the front of the recent ones.
