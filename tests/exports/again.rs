@@ -113,6 +113,7 @@ fn numbers_and_maps_of_materials_come_back() {
          bump -bm 2 t.png\nmap_d t.png\nmap_Ke t.png",
         "Kd 1 1 1\nKs 1 1 1\nNs 9\nnorm n.png",
         "Kd 1 1 1\nKs 1 1 1\nNs 9\nbump t.png\nnorm n.png",
+        "Kd .5 .25 1\nKs 0 0 0\nKe 0 0 0\nmap_Ke t.png",
         "bsdf pbr\nKd .5 .25 1\nKs 0 .5 1",
     ];
     for statements in rows {

@@ -257,7 +257,7 @@ pub(super) fn own_picture(content: &[u8]) -> Option<Picture> {
 
 fn reason(error: &image::ImageError) -> String {
     use image::ImageError;
-    use image::error::LimitErrorKind;
+    use image::error::{LimitErrorKind, UnsupportedErrorKind};
     match error {
         ImageError::Limits(limit) if matches!(limit.kind(), LimitErrorKind::DimensionError) => {
             format!("the picture is larger than {LARGEST_SIDE} x {LARGEST_SIDE}")
@@ -265,7 +265,12 @@ fn reason(error: &image::ImageError) -> String {
         ImageError::Limits(_) => {
             format!("the picture takes more than {} GB of memory", MOST_MEMORY >> 30)
         }
-        ImageError::Unsupported(_) => unknown(),
+        ImageError::Unsupported(it) if matches!(it.kind(), UnsupportedErrorKind::Format(_)) => {
+            unknown()
+        }
+        ImageError::Unsupported(_) => {
+            "this kind of the picture's format cannot be read; save it as PNG".to_owned()
+        }
         _ => "the picture is damaged".to_owned(),
     }
 }
@@ -273,6 +278,37 @@ fn reason(error: &image::ImageError) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A TIFF with a palette of colours, one pixel large.
+    fn palette_tiff() -> Vec<u8> {
+        let entries = [
+            (256, 1),
+            (257, 1),
+            (258, 8),
+            (259, 1),
+            (262, 3),
+            (273, 122),
+            (277, 1),
+            (278, 1),
+            (279, 1),
+        ];
+        let mut tiff = b"II*\0\x08\0\0\0\x09\0".to_vec();
+        for (tag, value) in entries {
+            tiff.extend([tag, 3].into_iter().flat_map(u16::to_le_bytes));
+            tiff.extend([1, value].into_iter().flat_map(u32::to_le_bytes));
+        }
+        tiff.extend([0; 5]);
+        tiff
+    }
+
+    #[test]
+    fn a_kind_of_a_format_that_is_not_read_is_no_unknown_format() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("p.tif");
+        std::fs::write(&path, palette_tiff()).unwrap();
+        let error = load_picture(&path).unwrap_err().to_string();
+        assert!(error.contains("cannot be read; save it as PNG"), "{error}");
+    }
 
     #[test]
     fn every_kind_of_picture_is_read_whatever_its_name_ends_in() {

@@ -9,6 +9,7 @@ use std::io::Read;
 use std::path::Path;
 
 use super::packed::{Unpacked, unpacked_name};
+use super::read::utf_8;
 use super::stl::is_stl;
 use marraztu_core::scene::UpAxis;
 
@@ -67,7 +68,8 @@ pub(super) fn stated_or_usual(stated: Option<StatedUp>, is_stl: impl FnOnce() ->
 /// Finds the up axis in the comments before the first statement.
 pub(super) fn stated_in(bytes: &[u8]) -> Option<StatedUp> {
     let head = &bytes[..bytes.len().min(usize::try_from(HEAD).unwrap_or(usize::MAX))];
-    let text = String::from_utf8_lossy(head);
+    let head = utf_8(head.to_vec());
+    let text = String::from_utf8_lossy(&head);
     let text = text.strip_prefix('\u{FEFF}').unwrap_or(&text);
     let lines = text.split(['\n', '\r']);
     let comments = lines.map(str::trim).filter(|line| !line.is_empty());
@@ -183,6 +185,9 @@ mod tests {
             let text = format!("\n# first\n#  {comment}\nv 1 2 3\n");
             let stated = stated_in(text.as_bytes()).map(|stated| stated.up);
             assert_eq!(stated, Some(up), "{comment}");
+            let wide: Vec<u8> =
+                format!("\u{FEFF}{text}").encode_utf16().flat_map(u16::to_le_bytes).collect();
+            assert_eq!(stated_in(&wide).map(|stated| stated.up), Some(up), "UTF-16: {comment}");
         }
     }
 

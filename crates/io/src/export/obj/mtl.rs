@@ -56,7 +56,8 @@ fn coefficients(mtl: &mut String, look: &Look) {
         let _ = writeln!(mtl, "{word} {r} {g} {b}");
     }
     let _ = writeln!(mtl, "Ns {}\nd {}", material.exponent, look.opacity);
-    if material.emission != [0.0; 3] {
+    // Readers take a map without a colour for full light.
+    if material.emission != [0.0; 3] || look.map(MapKind::Emission).is_some() {
         let [r, g, b] = material.emission;
         let _ = writeln!(mtl, "Ke {r} {g} {b}");
     }
