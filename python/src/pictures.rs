@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_io::{self as io, PICTURE_FORMATS};
 use marraztu_lab::error;
-use marraztu_lab::flip::Perceived;
+use marraztu_lab::flip::difference;
 use numpy::{PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -71,7 +71,7 @@ pub(crate) fn png<'py>(py: Python<'py>, pixels: Pixels<'py>) -> PyResult<Bound<'
 #[pyfunction]
 pub(crate) fn flip(py: Python<'_>, a: Pixels<'_>, b: Pixels<'_>) -> PyResult<f64> {
     let [a, b] = same_size(&a, &b)?;
-    work(py, 0, |_| Ok(Perceived::new(&a).difference(&Perceived::new(&b))))
+    work(py, 0, |_| Ok(difference(&a, &b)))
 }
 
 /// Returns the difference of two pictures of one size, multiplied by a factor.

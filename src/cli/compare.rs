@@ -7,7 +7,7 @@ use marraztu::plots::{self, PagePicture};
 use marraztu_core::base::image::Picture;
 use marraztu_io::{self as io, PICTURE_FORMATS, Sources};
 use marraztu_lab::error::amplified;
-use marraztu_lab::flip::Perceived;
+use marraztu_lab::flip;
 
 use super::failure::Failure;
 use super::page::{check_page, write_page};
@@ -152,7 +152,7 @@ fn difference(a: &Picture, b: &Picture) -> Difference {
     if measured.largest == 0 {
         return measured;
     }
-    Difference { flip: Perceived::new(a).difference(&Perceived::new(b)), ..measured }
+    Difference { flip: flip::difference(a, b), ..measured }
 }
 
 /// Measures the differences of pixels, except for the perceived one. `opaque` is the largest alpha.

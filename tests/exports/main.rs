@@ -64,3 +64,22 @@ fn image(path: &Path, json: &Value, image: usize) -> Picture {
     std::fs::write(&file, &buffer[start..start + length]).unwrap();
     io::load_picture(&file).unwrap()
 }
+
+#[test]
+fn hidden_objects_and_parts_are_counted_in_notes() {
+    let folder = tempfile::tempdir().unwrap();
+    let obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\no a\nf 1 2 3\no b\nf 1 3 2\n";
+    let object = |id: u32, rest: &str| {
+        format!("(id: {id}, name: \"t{id}\", model: File(path: \"t.obj\"), {rest}), ")
+    };
+    let objects = [object(1, "hidden_parts: \"0\""), object(2, "visible: false")].concat();
+    let cameras = "(id: 90, name: \"c\", eye: (0.5, 0.8, 8.0))";
+    let scene = format!("(version: 1, objects: [{objects}], cameras: [{cameras}])");
+    put(folder.path(), &[("t.obj", obj), ("s.marraztu", &scene)]);
+    for name in ["s.obj", "s.glb"] {
+        let notes = runs(folder.path(), &["export", "s.marraztu", "--out", name]);
+        for what in ["objects", "parts"] {
+            assert!(notes.contains(&format!("hidden {what} are left out: 1")), "{name} {notes}");
+        }
+    }
+}

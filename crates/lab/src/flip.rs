@@ -8,6 +8,8 @@
 //! dynamic range. All its filters are sums of separable ones, so each runs along rows, then along
 //! columns. Borders are extended with the last pixel.
 
+use std::ops::Range;
+
 use libm::{ceil, exp, pow, sqrt};
 use rayon::prelude::*;
 
@@ -62,17 +64,21 @@ impl Perceived {
     }
 
     /// Returns the mean difference to another picture of the same size, from 0 to 1.
-    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^52 pixels")]
+    ///
+    /// # Panics
+    /// If the sizes differ.
     pub fn difference(&self, other: &Self) -> f64 {
         assert_eq!(self.size, other.size, "pictures of one size are compared");
-        let most = most_color_error();
-        let rows = self.size.width.max(1);
-        // Summation by rows makes the result independent of the number of threads.
-        let sums: Vec<f64> = (0..self.size.height)
-            .into_par_iter()
-            .map(|y| (y * rows..(y + 1) * rows).map(|i| self.at(other, i, most)).sum())
-            .collect();
-        sums.iter().sum::<f64>() / self.size.area().max(1) as f64
+        mean(&self.sums(other, 0..self.size.height), self.size)
+    }
+
+    /// Returns the sum of the differences in each of some rows. Summation by rows makes the result
+    /// independent of the number of threads.
+    fn sums(&self, other: &Self, rows: Range<usize>) -> Vec<f64> {
+        let (width, most) = (self.size.width, most_color_error());
+        rows.into_par_iter()
+            .map(|y| (y * width..(y + 1) * width).map(|i| self.at(other, i, most)).sum())
+            .collect()
     }
 
     fn at(&self, other: &Self, i: usize, most: f64) -> f64 {
@@ -83,6 +89,39 @@ impl Perceived {
         pow(color, 1.0 - feature)
     }
 }
+
+/// Returns the mean difference of two pictures of one size, from 0 to 1, like
+/// [`Perceived::difference`]. Filters in bands of rows, so memory grows with the width alone.
+///
+/// # Panics
+/// If the sizes differ.
+pub fn difference(a: &Picture, b: &Picture) -> f64 {
+    let size = a.size();
+    assert_eq!(size, b.size(), "pictures of one size are compared");
+    let mut sums = Vec::with_capacity(size.height);
+    for top in (0..size.height).step_by(BAND) {
+        let bottom = size.height.min(top + BAND);
+        let (from, to) = (top.saturating_sub(REACH), size.height.min(bottom + REACH));
+        let [a, b] = [a, b].map(|picture| {
+            let pixels = picture.pixels()[from * size.width..to * size.width].to_vec();
+            let band = Picture::from_pixels(Size::new(size.width, to - from), pixels);
+            Perceived::new(&band.expect("whole rows"))
+        });
+        sums.extend(a.sums(&b, top - from..bottom - from));
+    }
+    mean(&sums, size)
+}
+
+#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^52 pixels")]
+fn mean(sums: &[f64], size: Size) -> f64 {
+    sums.iter().sum::<f64>() / size.area().max(1) as f64
+}
+
+/// The rows that are filtered at a time.
+const BAND: usize = 256;
+
+/// The largest radius of the filters, in pixels.
+const REACH: usize = 10;
 
 /// q_c: the exponent of colour differences.
 const COLOR_EXPONENT: f64 = 0.7;
@@ -288,6 +327,23 @@ mod tests {
         let grey = |value| picture(16, move |_, _| [value; 3]);
         assert!((grey(100).difference(&grey(101)) - 0.030_794).abs() < 1e-4);
         assert!((grey(255).difference(&grey(0)) - 0.967_391).abs() < 1e-4);
+    }
+
+    #[test]
+    fn bands_of_rows_give_the_same_bits_as_the_whole_picture() {
+        for height in [0, 9, 2 * BAND, 2 * BAND + 3] {
+            let size = Size::new(7, height);
+            let [a, b] = [pattern, changed].map(|of| {
+                let pixels = (0..size.area()).map(|i| {
+                    let [r, g, b] = of(i % 7 * 4, i / 7).map(|c| u8::try_from(c % 256).unwrap());
+                    [r, g, b, 255]
+                });
+                Picture::from_pixels(size, pixels.collect()).unwrap()
+            });
+            let whole = Perceived::new(&a).difference(&Perceived::new(&b));
+            assert_eq!(difference(&a, &b).to_bits(), whole.to_bits(), "{height}");
+            assert!(height == 0 || whole > 0.0);
+        }
     }
 
     #[test]

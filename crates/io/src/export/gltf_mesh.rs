@@ -50,7 +50,7 @@ impl Writer<'_> {
         let objects = self.meshes(object, &baked);
         let node = match &objects[..] {
             [] => {
-                self.notes.push(format!("{} has no faces: it is an empty node", object.name));
+                self.notes.push(format!("{} shows no faces: it is an empty node", object.name));
                 self.named(&object.name)
             }
             [(name, groups)] => {

@@ -21,7 +21,7 @@ use self::companion::check_companion;
 use super::obj::lines::unmarked;
 use super::replace::{SaveError, Worth, check_target, replace};
 use super::sources::Sources;
-use marraztu_core::scene::{Scene, View};
+use marraztu_core::scene::{Object, Scene, View};
 
 /// The first line of exported text files. A companion file that begins with it was written by this
 /// program and may be replaced.
@@ -113,7 +113,7 @@ pub fn export(
         Format::Gltf | Format::Glb => gltf::written(&stem, scene, view, format),
     };
     let Content { files, notes } = content.map_err(|reason| SaveError::new(path, reason))?;
-    let notes = left_out.into_iter().chain(notes).collect();
+    let notes = left_out.into_iter().chain(hidden(scene)).chain(notes).collect();
     // The main file keeps the user's name; companions are placed next to it.
     let last = files.len().saturating_sub(1);
     let named = |(i, (name, bytes)): (usize, (String, Vec<u8>))| {
@@ -131,6 +131,18 @@ pub fn export(
         exported.files.push(file);
     }
     Ok(exported)
+}
+
+/// Notes the numbers of hidden objects and of hidden parts of visible ones.
+fn hidden(scene: &Scene) -> Vec<String> {
+    // Placeholders are noted with their files.
+    let objects = scene.objects.iter().map(|(_, object)| object);
+    let (visible, hidden): (Vec<&Object>, Vec<&Object>) =
+        objects.filter(|it| !it.model.is_placeholder()).partition(|it| it.visible);
+    let parts = visible.iter().map(|it| it.model.mesh.parts().len() - it.shown_parts().count());
+    let counts = [("objects", hidden.len()), ("parts", parts.sum())];
+    let left_out = counts.into_iter().filter(|(_, count)| *count > 0);
+    left_out.map(|(what, count)| format!("hidden {what} are left out: {count}")).collect()
 }
 
 /// Percent-encodes a name for a URI: all but letters, digits, `-`, `_` and `.`.

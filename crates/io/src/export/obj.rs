@@ -37,9 +37,7 @@ struct Writer {
 /// Writes the files.
 pub(super) fn written(stem: &str, scene: &Scene, view: &View) -> Result<Content, String> {
     let objects = scene.objects.iter().map(|(_, object)| object);
-    let (visible, mut hidden): (Vec<&Object>, Vec<&Object>) = objects.partition(|it| it.visible);
-    // Placeholders are already noted, with their files.
-    hidden.retain(|it| !it.model.is_placeholder());
+    let visible: Vec<&Object> = objects.filter(|object| object.visible).collect();
     let mut writer = Writer {
         text: String::new(),
         looks: Looks::new(Detail::Mtl),
@@ -61,9 +59,6 @@ pub(super) fn written(stem: &str, scene: &Scene, view: &View) -> Result<Content,
     }
     content.files.push((format!("{stem}.obj"), (head + &writer.text).into_bytes()));
     content.notes.push("OBJ has no cameras or lights: they are left out".to_owned());
-    if !hidden.is_empty() {
-        content.notes.push(format!("hidden objects are left out: {}", hidden.len()));
-    }
     Ok(content)
 }
 
