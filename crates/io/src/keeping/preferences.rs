@@ -159,9 +159,9 @@ impl Preferences {
         Ok(())
     }
 
-    /// Merges these preferences with those of others, given the state before both.
+    /// Merges these preferences with another program's, given the state before both.
     fn merged(&self, before: &Self, others: Self) -> Self {
-        // New recent files go to the front, those of this program first.
+        // New recent files go to the front; this program comes first.
         let is_new = |path: &&PathBuf| !before.recent.contains(path);
         let (new, old): (Vec<_>, Vec<_>) = self.recent.iter().partition(is_new);
         let theirs = others.recent.iter().filter(is_new).filter(|path| !self.recent.contains(path));

@@ -28,7 +28,7 @@ use marraztu_core::scene::{Bounds, dvec3};
 /// The distance of a sun, relative to the largest coordinate of the scene.
 const SUN: f64 = (1_u64 << 60) as f64;
 
-/// Up to this number of casters, shafts in world space do not pay.
+/// Up to this number of casters, rays are transformed for each caster near them.
 const FEW: usize = 8;
 
 /// The casters of a frame, ready for ray tracing.

@@ -115,6 +115,38 @@ fn every_ray_is_decided_as_whole_numbers_decide_it() {
     assert!(stopped > rays / 10 && stopped < rays * 9 / 10, "{stopped} of {rays}");
 }
 
+/// Points close together among many small casters: most casters are skipped by the shaft in world
+/// space, and none that stops a ray.
+#[test]
+fn no_caster_that_stops_a_ray_is_skipped_among_many() {
+    let mut rng = Rng::new(6);
+    let (mut rays, mut stopped) = (0, 0);
+    for round in 0..600 {
+        let far = if round % 5 == 0 { 1 << 40 } else { 0 };
+        let moved = |[x, y, z]: Point| [x + far, y, z - far];
+        let add = |a: Point, b: Point| [a[0] + b[0], a[1] + b[1], a[2] + b[2]];
+        let (centre, light) = (small(&mut rng, 40), moved(small(&mut rng, 40)));
+        let points: Vec<Point> =
+            (0..64).map(|_| moved(add(centre, small(&mut rng, 1 + round % 4)))).collect();
+        let casters: Vec<(Vec<[Point; 3]>, Point)> = (0..5 * FEW)
+            .map(|_| {
+                let triangle = [0; 3].map(|_| small(&mut rng, 12));
+                (vec![triangle], moved(small(&mut rng, 40)))
+            })
+            .collect();
+        let got = traced(&shadows_of(&casters, light), &points);
+        for (i, p) in points.iter().enumerate() {
+            let want = casters.iter().any(|(triangles, at)| {
+                stands_between(triangles[0].map(|corner| add(corner, *at)), *p, light)
+            });
+            assert_eq!(got >> i & 1 == 1, want, "round {round}, point {p:?}, light {light:?}");
+            rays += 1;
+            stopped += usize::from(want);
+        }
+    }
+    assert!(stopped > rays / 10 && stopped < rays * 9 / 10, "{stopped} of {rays}");
+}
+
 /// Returns an octahedron, each face divided into n^2 triangles: closed, with whole coordinates.
 fn octahedron(n: i128) -> Vec<[Point; 3]> {
     let mut triangles = Vec::new();
