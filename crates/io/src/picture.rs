@@ -336,10 +336,28 @@ fn cause(error: ImageError) -> std::io::Error {
 }
 
 fn stream_png(header: &Header<'_>, rows: &mut Rows<'_>, to: &mut dyn Write) -> std::io::Result<()> {
-    encode_png(header, rows, to).map_err(|error| match error {
-        png::EncodingError::IoError(error) => error,
-        error => error.into(),
+    let mut watched = Watched { to, failed: None };
+    encode_png(header, rows, &mut watched).map_err(|error| match (watched.failed, error) {
+        (Some(error), _) | (None, png::EncodingError::IoError(error)) => error,
+        (None, error) => error.into(),
     })
+}
+
+/// Keeps the last error of a file: the encoder of PNG passes on its text alone.
+struct Watched<'a> {
+    to: &'a mut dyn Write,
+    failed: Option<std::io::Error>,
+}
+
+impl Write for Watched<'_> {
+    fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+        let written = self.to.write(bytes);
+        written.map_err(|error| std::io::Error::from(self.failed.insert(error).kind()))
+    }
+
+    fn flush(&mut self) -> std::io::Result<()> {
+        self.to.flush()
+    }
 }
 
 fn encode_png(
@@ -387,6 +405,7 @@ fn opaque_bytes(pixels: &[[u8; 4]]) -> Vec<u8> {
 mod tests {
     use super::*;
     use crate::load_picture;
+    use marraztu_core::base::rng::Rng;
 
     fn picture(alpha: u8) -> Picture {
         let pixels = vec![[255, 0, 0, 255], [0, 255, 0, alpha], [0, 0, 255, 255], [1, 2, 3, 255]];
@@ -491,18 +510,23 @@ mod tests {
 
     #[test]
     fn every_format_passes_on_that_the_disk_is_full() {
-        struct Full;
+        struct Full(usize);
         impl Write for Full {
-            fn write(&mut self, _: &[u8]) -> std::io::Result<usize> {
-                Err(std::io::ErrorKind::StorageFull.into())
+            fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+                let left = self.0.checked_sub(bytes.len());
+                self.0 = left.ok_or(std::io::ErrorKind::StorageFull)?;
+                Ok(bytes.len())
             }
             fn flush(&mut self) -> std::io::Result<()> {
                 Ok(())
             }
         }
-        for format in PICTURE_FORMATS {
-            let error = (format.encode)(&picture(7), &mut Full).unwrap_err();
-            assert_eq!(error.kind(), std::io::ErrorKind::StorageFull, "{}", format.name);
+        let mut rng = Rng::new(1);
+        let pixels = (0..300 * 300).map(|_| [0; 4].map(|_| rng.index(256).to_le_bytes()[0]));
+        let noise = Picture::from_pixels(Size::new(300, 300), pixels.collect()).unwrap();
+        for (format, room) in PICTURE_FORMATS.iter().flat_map(|it| [(it, 0), (it, 9999)]) {
+            let error = (format.encode)(&noise, &mut Full(room)).unwrap_err();
+            assert_eq!(error.kind(), std::io::ErrorKind::StorageFull, "{} {room}", format.name);
         }
     }
 }
