@@ -186,7 +186,7 @@ fn measured(arguments: &Lab, studio: &mut Studio, current: Settings) -> Result<R
         true => Thoroughness::QUICK,
         false => Thoroughness::WHOLE,
     };
-    let question = Question { current, axes, thoroughness };
+    let question = Question::new(current, axes, thoroughness);
     let watch = Watch::default();
     let bar = Bar::of("measuring", &watch.progress);
     let findings = sweep(studio, &question, &mut WallClock::default(), &watch, &mut |_| {})?;

@@ -11,7 +11,7 @@ use marraztu_core::scene::{
     CameraId, Command, Fill, Item, Light, Object, Observer, Pose, Projection,
 };
 use marraztu_io::{self as io, Progress};
-use marraztu_lab::dial::{Dial, Figures, Step};
+use marraztu_lab::dial::{Dial, Figures, Step, error_in_words, is_steady};
 use marraztu_lab::report::brief;
 use marraztu_render::accel::Accelerated as _;
 use marraztu_render::{
@@ -71,10 +71,9 @@ pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
         return written(arguments, &target, &stage, &content);
     }
     let plan = plan_frame(&shot);
-    renderer.render_watched(&plan, &|done, all| {
-        // Nothing cancels this progress.
-        let _ = progress.reached(done, all);
-    });
+    // Nothing cancels this progress, so it is always wanted.
+    let tell = |done, all| _ = progress.reached(done, all);
+    let _ = renderer.render_watched(&plan, &|| true, &tell);
     drop(bar);
     tell_unseen(&mut renderer, &shot);
     let content = LayerContent::new(&shot, Some(renderer.picture()), numbers, false);
@@ -147,11 +146,16 @@ fn tell_cost(renderer: &mut Renderer, shot: &Shot) {
     let figures = dial.figures();
     let found = figures.iter().find(|figures| figures.settings == shot.settings);
     let Some(Figures { ms, error: Some(error), .. }) = found else { return };
+    let threads = rayon::current_num_threads();
+    let busy = if is_steady(ms) { "" } else { ", as far as this busy machine tells" };
+    let error = error_in_words(error).map_or_else(
+        || "an error that is not known well enough".to_owned(),
+        |error| format!("error {error} of 255 against the ideal (RMSE, 95% interval)"),
+    );
     note(&format_args!(
-        "{} ms a picture with {} threads; error {} of 255 against the ideal (RMSE)",
-        brief(*ms),
-        rayon::current_num_threads(),
-        brief(*error)
+        "{} per pixel: {} ms a picture with {threads} threads{busy}; {error}",
+        shot.settings.samples_in_words(),
+        brief(ms.value),
     ));
 }
 

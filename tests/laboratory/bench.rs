@@ -108,9 +108,9 @@ pub(crate) fn found(clock: &mut FakeClock, source: &mut FakeSource) -> Findings 
     let (combinations, time) = (20, Duration::from_secs(9));
     let thoroughness = Thoroughness { word: "test", limits, combinations, time, presets: true };
     let current = Settings::default();
-    let question = Question { current, axes: all_axes(), thoroughness };
+    let question = Question::new(current, all_axes(), thoroughness);
     let (scene, view) = textured_scene();
-    let candidates = candidates(&scene, &view, &current, &question.axes, &thoroughness);
+    let candidates = candidates(&scene, &view, &question);
     let others = |left_out: &&LeftOut| {
         !left_out.what.contains("combinations")
             && left_out.what != "per sample shading"

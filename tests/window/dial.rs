@@ -45,7 +45,7 @@ fn the_dial_is_measured_when_nothing_moves_and_then_draws_nothing_more() {
     let figures = dial.figures();
     let settings: Vec<Settings> = figures.iter().map(|it| it.settings).collect();
     assert_eq!(settings, ["draft", "default", "exact", "ideal"].map(preset));
-    let errors: Vec<f64> = figures.iter().filter_map(|it| it.error).collect();
+    let errors: Vec<f64> = figures.iter().filter_map(|it| Some(it.error?.value)).collect();
     assert!(errors[0] > errors[1] && errors[3] == 0.0, "{errors:?}");
     let said = in_words(figures).unwrap();
     assert!(editor.shows(&said), "{said}");
@@ -96,10 +96,11 @@ fn settings_of_the_users_own_have_a_row_and_a_way_back() {
     rest(&mut editor);
     let rows = texts_of_rows(&editor);
     assert_eq!(rows.len(), 5, "{rows:?}");
-    assert!(rows[4].starts_with("Own: "), "{rows:?}");
+    assert!(rows[4].starts_with("Own, 1 sample: "), "{rows:?}");
     let measured = editor.state().dial.figures().to_vec();
     assert_eq!(measured.len(), 5);
-    assert_eq!((measured[3].settings, measured[4].error), (own, Some(0.0)));
+    let ideal = measured[4].error.map(|error| error.value);
+    assert_eq!((measured[3].settings, ideal), (own, Some(0.0)));
     editor.perform(Action::DialExact);
     assert!(editor.state().dial.current, "nothing is measured again");
     control(&editor, Role::RadioButton, &rows[4]).click();
@@ -121,12 +122,12 @@ fn over_a_low_picture_the_dial_is_one_row_until_it_is_clicked() {
     rest(&mut editor);
     assert_eq!(texts_of_rows(&editor), [""; 0]);
     let row = control(&editor, Role::ComboBox, "Accuracy").accesskit_node().value();
-    assert!(row.as_ref().is_some_and(|row| row.starts_with("Default: ")), "{row:?}");
+    assert!(row.as_ref().is_some_and(|row| row.starts_with("Default, 1 sample: ")), "{row:?}");
     control(&editor, Role::ComboBox, "Accuracy").click();
     editor.settle();
     let rows = texts_of_rows(&editor);
     assert_eq!(rows.len(), 4, "{rows:?}");
-    let exact = rows.iter().find(|row| row.starts_with("Exact: ")).unwrap();
+    let exact = rows.iter().find(|row| row.starts_with("Exact, 1 sample: ")).unwrap();
     control(&editor, Role::RadioButton, exact).click();
     editor.settle();
     assert_eq!(editor.state().settings, preset("exact"));

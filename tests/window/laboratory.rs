@@ -213,7 +213,7 @@ fn the_picture_is_compared_with_the_exact_one_of_the_same_moment() {
     });
     assert!(lab(&editor).judged.unwrap().error.whole.largest > 1);
     click(&mut editor, Role::RadioButton, "Compare: x16");
-    assert!(editor.shows("Error: largest"));
+    assert!(editor.shows("Error with 1 sample: largest"));
     click(&mut editor, Role::RadioButton, "Compare: Off");
     assert_eq!(lab(&editor).compare, Compare::Off);
 }

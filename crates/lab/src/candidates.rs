@@ -4,8 +4,11 @@ use std::collections::BTreeMap;
 use std::time::Duration;
 
 use super::pairs::Limits;
+use super::sweep::Question;
 use super::word::Word;
-use marraztu_core::accuracy::{ACCURACY_PRESETS, AXES, Axis, AxisKind, Choice, Samples, Settings};
+use marraztu_core::accuracy::{
+    ACCURACY_PRESETS, AXES, AccuracyPreset, Axis, AxisKind, Choice, Samples, Settings,
+};
 use marraztu_core::scene::{Scene, View};
 
 /// The thoroughness of a measurement.
@@ -62,7 +65,9 @@ pub struct Candidate {
     pub group: Group,
     /// The name in the table.
     pub name: String,
-    /// The settings.
+    /// The settings that a user chooses.
+    pub chosen: Settings,
+    /// The settings that are drawn: at rest, a picture may have more samples.
     pub settings: Settings,
 }
 
@@ -98,41 +103,50 @@ pub struct Candidates {
     pub left_out: Vec<LeftOut>,
 }
 
-/// Lists the settings to measure for these axes in this scene.
-pub fn candidates(
-    scene: &Scene,
-    view: &View,
-    current: &Settings,
-    axes: &[&'static Axis],
-    thoroughness: &Thoroughness,
-) -> Candidates {
+/// Lists the settings to measure in this scene.
+///
+/// The first are the pictures of the dial, as the window shows them at rest: they answer the first
+/// question of a user. Choices of axes are measured with the samples of a moving picture.
+pub fn candidates(scene: &Scene, view: &View, question: &Question) -> Candidates {
+    let Question { current, axes, thoroughness, .. } = question;
     let most_combinations = thoroughness.combinations;
     let base = Settings::default().modelled_as(current);
     let mut found = Candidates::default();
-    let mut add = |group, name: String, settings| {
-        found.all.push(Candidate { group, name, settings });
+    let mut add = |group, name: String, chosen: Settings, settings: Settings| {
+        found.all.push(Candidate { group, name, chosen, settings });
     };
+    let sampled =
+        |label: &str, settings: &Settings| format!("{label}, {}", settings.samples_in_words());
     // The default comes first: all others are measured against it.
-    for preset in ACCURACY_PRESETS.iter().filter(|preset| preset.of(current) == base) {
-        add(Group::Preset, preset.label.to_owned(), base);
+    add(Group::Preset, sampled("Default", &base), base, base);
+    if thoroughness.presets {
+        for preset in AccuracyPreset::dial() {
+            let chosen = preset.of(current);
+            let settings = question.at_rest(&chosen);
+            if settings != base {
+                add(Group::Preset, sampled(preset.label, &settings), chosen, settings);
+            }
+        }
+        add(Group::Current, current.in_words(), *current, question.at_rest(current));
     }
     // Axes without an effect in this scene are listed as left out.
     let (sensible, senseless): (Vec<&Axis>, Vec<&Axis>) =
         axes.iter().partition(|axis| (axis.sense)(scene, view).is_ok());
     for axis in &sensible {
         for choice in offered(axis, (scene, view), &base) {
-            add(Group::Axis(axis.key), choice.label.to_owned(), choice.of(&base));
+            let settings = choice.of(&base);
+            add(Group::Axis(axis.key), choice.label.to_owned(), settings, settings);
         }
     }
     if thoroughness.presets {
-        for preset in ACCURACY_PRESETS.iter().filter(|preset| preset.of(current) != base) {
-            add(Group::Preset, preset.label.to_owned(), preset.of(current));
+        for preset in &ACCURACY_PRESETS[AccuracyPreset::dial().len()..] {
+            let settings = preset.of(current);
+            add(Group::Preset, sampled(preset.label, &settings), settings, settings);
         }
-        add(Group::Current, current.in_words(), *current);
     }
     let (combinations, count) = combinations(&base, &sensible, (scene, view), most_combinations);
     for settings in combinations {
-        add(Group::Combination, settings.in_words(), settings);
+        add(Group::Combination, settings.in_words(), settings, settings);
     }
     // Report omissions with reasons, since a missing row would look like an error.
     for axis in senseless {
@@ -296,7 +310,8 @@ mod tests {
     fn combined(most: usize) -> Vec<Settings> {
         let (scene, view) = marraztu_io::default_scene();
         let thoroughness = Thoroughness { combinations: most, ..Thoroughness::QUICK };
-        let found = candidates(&scene, &view, &Settings::default(), &all_axes(), &thoroughness);
+        let question = Question::new(Settings::default(), all_axes(), thoroughness);
+        let found = candidates(&scene, &view, &question);
         let all = found.all.into_iter().filter(|it| it.group == Group::Combination);
         all.map(|it| it.settings).collect()
     }

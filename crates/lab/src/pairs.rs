@@ -39,6 +39,15 @@ const UNDISTURBED: f64 = 0.2;
 /// An interval of this width, relative to the ratio, is narrow enough to stop.
 const NARROW: f64 = 0.03;
 
+/// Pictures that take this many times the limit of time have only [`LEAST_SLOW`] pairs.
+const LONGEST: f64 = 4.0;
+
+/// The fewest pairs of slow pictures.
+const LEAST_SLOW: usize = 2;
+
+/// A bootstrap over fewer pairs is too narrow.
+const FEW: usize = 7;
+
 /// The resamples of a bootstrap.
 const RESAMPLES: usize = 400;
 
@@ -177,7 +186,14 @@ impl Ratio {
         let at = |p: f64| quantile_of(resampled.clone(), p);
         let tail = (1.0 - CONFIDENCE) / 2.0;
         let (lower, upper) = (at(0.25)?.min(ratio), at(0.75)?.max(ratio));
-        let interval = [at(tail)?.min(ratio), at(1.0 - tail)?.max(ratio)];
+        let mut interval = [at(tail)?.min(ratio), at(1.0 - tail)?.max(ratio)];
+        // Resamples of a few pairs differ too little, so the interval contains each pair's ratio.
+        if pairs.len() < FEW {
+            for [a, b] in pairs {
+                let ratio = (b[0] + b[1]) / (a[0] + a[1]);
+                interval = [interval[0].min(ratio), interval[1].max(ratio)];
+            }
+        }
         let quartiles = Quartiles { lower, median: ratio, upper };
         Some(Self { quartiles, interval, pairs: pairs.len(), thrown, a_ms })
     }
@@ -255,6 +271,9 @@ pub fn abba(
             if is_narrow || spent >= limits.time.as_secs_f64() * 1e3 {
                 break;
             }
+        }
+        if pairs.len() >= LEAST_SLOW && spent >= LONGEST * limits.time.as_secs_f64() * 1e3 {
+            break;
         }
         if watch.progress.is_cancelled() {
             return Err(Unmeasured::Cancelled);

@@ -59,6 +59,10 @@ impl Eq for Reference {}
 pub trait PictureSource {
     /// Draws the whole picture without reusing the last one.
     fn draw(&mut self, settings: &Settings);
+    /// Draws the whole picture, and reports its progress.
+    fn draw_slowly(&mut self, settings: &Settings, _: &Progress) {
+        self.draw(settings);
+    }
     /// Returns the last picture.
     fn picture(&self) -> &Picture;
     /// Returns the primitive at each pixel of the last picture.
@@ -117,6 +121,13 @@ impl PictureSource for Studio {
         let plan = plan_frame(&self.shot.with(*settings));
         // A cancelled picture is not used.
         let _ = self.renderer.render_while(&plan, &|| !self.progress.is_cancelled());
+    }
+
+    fn draw_slowly(&mut self, settings: &Settings, progress: &Progress) {
+        let plan = plan_frame(&self.shot.with(*settings));
+        // A cancelled picture is not used.
+        let tell = |done, all| _ = progress.reached(done, all);
+        let _ = self.renderer.render_watched(&plan, &|| !self.progress.is_cancelled(), &tell);
     }
 
     fn picture(&self) -> &Picture {

@@ -28,7 +28,7 @@ use super::statistics::Quartiles;
 use super::timing::{Clock, Work};
 use super::word::Word;
 use marraztu_core::accuracy::Shot;
-use marraztu_core::accuracy::{Axis, Settings};
+use marraztu_core::accuracy::{Axis, Samples, Settings};
 use marraztu_core::base::image::Size;
 
 /// The task of a sweep.
@@ -40,6 +40,24 @@ pub struct Question {
     pub axes: Vec<&'static Axis>,
     /// The thoroughness of the sweep.
     pub thoroughness: Thoroughness,
+    /// The samples per pixel of a picture at rest; `None` if it stays as it is drawn.
+    pub refined: Option<Samples>,
+}
+
+impl Question {
+    /// Asks about pictures that have the samples of a picture in a file when nothing moves.
+    pub const fn new(
+        current: Settings,
+        axes: Vec<&'static Axis>,
+        thoroughness: Thoroughness,
+    ) -> Self {
+        Self { current, axes, thoroughness, refined: Some(Settings::REFINED) }
+    }
+
+    /// Returns the settings of a picture at rest.
+    pub fn at_rest(&self, settings: &Settings) -> Settings {
+        self.refined.map_or(*settings, |samples| settings.refined_to(samples))
+    }
 }
 
 /// The results of a sweep.
@@ -125,12 +143,13 @@ pub enum Verdict {
     Slower,
     /// Within the noise.
     Alike,
-    /// The machine was too busy: the time may be half or twice as long.
+    /// The machine was too busy to tell: see [`TOO_BUSY`].
     Busy,
 }
 
-/// Noise above this fraction says nothing.
-pub const TOO_BUSY: f64 = 1.0;
+/// With more noise than this, two choices are not called equally fast: a difference that people
+/// care about may be hidden.
+pub const TOO_BUSY: f64 = 0.2;
 
 /// A row of the table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -142,6 +161,8 @@ pub struct Row {
     pub name: String,
     /// The index of the point.
     pub point: usize,
+    /// The settings to choose for this picture: at rest, it may have more samples than chosen.
+    pub chosen: Settings,
     /// The reference of the row.
     pub against: Against,
     /// The error against it.
@@ -228,11 +249,13 @@ pub fn sweep(
     tell: &mut dyn FnMut(&Findings),
 ) -> Result<Findings, Unmeasured> {
     let Shot { scene, view, size, .. } = studio.shot().clone();
-    let candidates =
-        candidates(&scene, &view, &question.current, &question.axes, &question.thoroughness);
+    let candidates = candidates(&scene, &view, question);
     let mut bench = Bench { clock, source: studio, watch, question, size };
     bench.run(candidates, tell)
 }
+
+/// The share of the progress for drawing the ideal.
+const IDEAL: f64 = 0.2;
 
 /// The context of a sweep.
 pub struct Bench<'a> {
@@ -273,11 +296,15 @@ impl Bench<'_> {
         references.place(self.source, base);
         if thoroughness.presets {
             let (ideal, source) = (base.ideal(), &mut *self.source);
-            let time = self.clock.time(Work::Picture(&ideal), &mut || source.draw(&ideal));
+            let progress = self.watch.progress.part(0.0, IDEAL);
+            let draw = &mut || source.draw_slowly(&ideal, &progress);
+            let time = self.clock.time(Work::Picture(&ideal), draw);
             references.ideal_ms = time.as_secs_f64() * 1e3;
             references.drawn.push((ideal, self.source.last_rendering(&ideal)));
         }
-        self.watch.progress.reached(0, all.len())?;
+        let ideal = if thoroughness.presets { IDEAL } else { 0.0 };
+        let progress = self.watch.progress.part(ideal, 1.0);
+        progress.reached(0, all.len())?;
         // The control measures the default against itself, which gives the noise floor.
         let control = self.measured(&base, &base)?;
         let mut findings = self.begin(control, left_out);
@@ -286,7 +313,7 @@ impl Bench<'_> {
         let steps = all.len() + kernels;
         let mut late = 0;
         for (i, candidate) in all.into_iter().enumerate() {
-            self.watch.progress.reached(i, steps)?;
+            progress.reached(i, steps)?;
             // Only combinations are dropped for lack of time; single axes are always measured.
             let is_late = self.clock.now().saturating_sub(begun) >= thoroughness.time;
             if candidate.group == Group::Combination && is_late {
@@ -303,7 +330,7 @@ impl Bench<'_> {
             });
         }
         for i in 0..kernels {
-            self.watch.progress.reached(steps - kernels + i, steps)?;
+            progress.reached(steps - kernels + i, steps)?;
             let limits = &thoroughness.limits;
             findings.kernels.push(kernels::measure(i, self.clock, limits, self.watch)?);
         }
@@ -343,12 +370,16 @@ impl Bench<'_> {
         candidate: Candidate,
         references: &mut References,
     ) -> Result<(), Unmeasured> {
-        let Candidate { group, name, settings } = candidate;
+        let Candidate { group, name, chosen, settings } = candidate;
         let known = findings.points.iter().position(|point| point.settings == settings);
         let point = match known {
             Some(point) => point,
             None => {
-                let point = self.point(findings, base, settings, references)?;
+                let name = match group {
+                    Group::Preset => name.clone(),
+                    Group::Axis(_) | Group::Current | Group::Combination => settings.in_words(),
+                };
+                let point = self.point(findings, base, (name, settings), references)?;
                 findings.points.push(point);
                 findings.points.len() - 1
             }
@@ -366,7 +397,7 @@ impl Bench<'_> {
         let (exact, own) = (reference.of(&settings), settings);
         let [exact, own] = [exact, own].map(|settings| references.place(self.source, settings));
         let error = references.drawn[own].1.error(&references.drawn[exact].1);
-        findings.rows.push(Row { group, name, point, against, error });
+        findings.rows.push(Row { group, name, point, chosen, against, error });
         Ok(())
     }
 
@@ -374,7 +405,7 @@ impl Bench<'_> {
         &mut self,
         findings: &Findings,
         base: &Settings,
-        settings: Settings,
+        (name, settings): (String, Settings),
         references: &mut References,
     ) -> Result<Measured, Unmeasured> {
         let a_ms = findings.control.a_ms;
@@ -394,7 +425,7 @@ impl Bench<'_> {
         let ideal = is_judged.then(|| references.place(self.source, base.ideal()));
         let rendering = &references.drawn[own].1;
         Ok(Measured {
-            name: settings.in_words(),
+            name,
             settings,
             ms: if settings == *base { a_ms } else { a_ms * ratio.quartiles.median },
             verdict: Verdict::of(&ratio, findings.floor),

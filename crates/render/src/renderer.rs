@@ -116,21 +116,25 @@ impl Renderer {
 
     /// Draws a plan from scratch, independently of earlier pictures.
     pub fn render(&mut self, plan: &FramePlan) -> &Picture {
-        self.render_watched(plan, &|_, _| {})
+        self.render_while(plan, &|| true).expect("it is always wanted");
+        self.picture()
     }
 
     /// Draws a plan from scratch and reports progress between tiles: the number of painted tiles,
     /// and their total. With several samples per pixel, each tile is painted in several passes and
     /// counts in each.
+    ///
+    /// # Errors
+    /// See [`Self::redraw`].
     pub fn render_watched(
         &mut self,
         plan: &FramePlan,
+        wanted: &(dyn Fn() -> bool + Sync),
         tell: &(dyn Fn(usize, usize) + Sync),
-    ) -> &Picture {
+    ) -> Result<&Picture, Cancelled> {
         self.forget();
-        self.redraw_by(plan, &Cancellation::new(&|| true).telling(tell))
-            .expect("it is always wanted");
-        self.picture()
+        self.redraw_watched(plan, wanted, tell)?;
+        Ok(self.picture())
     }
 
     /// Draws a plan from scratch, like [`Self::render`].
@@ -166,6 +170,19 @@ impl Renderer {
         wanted: &(dyn Fn() -> bool + Sync),
     ) -> Result<Damage, Cancelled> {
         self.redraw_by(plan, &Cancellation::new(wanted))
+    }
+
+    /// Works like [`Self::redraw`], and reports progress like [`Self::render_watched`].
+    ///
+    /// # Errors
+    /// See [`Self::redraw`].
+    pub fn redraw_watched(
+        &mut self,
+        plan: &FramePlan,
+        wanted: &(dyn Fn() -> bool + Sync),
+        tell: &(dyn Fn(usize, usize) + Sync),
+    ) -> Result<Damage, Cancelled> {
+        self.redraw_by(plan, &Cancellation::new(wanted).telling(tell))
     }
 
     /// See [`Self::redraw`].

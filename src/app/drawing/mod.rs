@@ -5,6 +5,7 @@ pub(crate) mod border;
 pub(crate) mod dial;
 pub(crate) mod images;
 pub(crate) mod motion;
+pub(crate) mod painted;
 pub(crate) mod reduction;
 pub(crate) mod refinement;
 pub(crate) mod snapshot;

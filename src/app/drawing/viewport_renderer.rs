@@ -13,6 +13,7 @@ use super::adaptive_quality::{AdaptiveQuality, Attempt};
 use super::border::Border;
 use super::dial::{DialFigures, IdleDial};
 use super::images::present;
+use super::painted::Painted;
 use super::reduction::{Applicable, Reduction};
 use super::refinement::{difference, next_samples};
 use super::snapshot::{DrawOptions, Snapshot};
@@ -82,6 +83,8 @@ pub(crate) struct ViewportRenderer {
     shown: Option<Reduction>,
     /// Whether the last frame was cancelled.
     gave_up: bool,
+    /// Receives the progress of the picture that is being drawn.
+    painted: Arc<Painted>,
     /// The last explanation.
     explained: Option<Arc<Explained>>,
     /// The copies of the last pictures, the latest at the end. The window may hold one and the code
@@ -91,7 +94,7 @@ pub(crate) struct ViewportRenderer {
 }
 
 impl ViewportRenderer {
-    pub(crate) fn new(clock: fn() -> Instant) -> Self {
+    pub(crate) fn new(clock: fn() -> Instant, painted: Arc<Painted>) -> Self {
         Self {
             renderer: Renderer::default(),
             finer: Renderer::default(),
@@ -101,6 +104,7 @@ impl ViewportRenderer {
             dial: IdleDial::default(),
             shown: None,
             gave_up: false,
+            painted,
             explained: None,
             images: <[Arc<ColorImage>; 3]>::default(),
         }
@@ -137,7 +141,10 @@ impl ViewportRenderer {
             Asked::Newer => !attempt.gives_way(clock().duration_since(begun)),
             Asked::Nothing => false,
         };
-        let drawn = self.renderer.redraw(&plan, &wanted);
+        let painted = &self.painted;
+        let tell = |done, all| painted.tell(done, all);
+        let drawn = self.renderer.redraw_watched(&plan, &wanted, &tell);
+        painted.tell(0, 0);
         self.gave_up = drawn == Err(Cancelled);
         if self.gave_up {
             self.quality.record_given_up(share, clock().duration_since(begun));
@@ -346,7 +353,7 @@ mod tests {
     #[test]
     fn the_time_that_is_shown_is_that_of_the_last_picture_that_was_drawn_in_part_or_whole() {
         let wanted = snapshot(Size::new(64, 48));
-        let mut renderer = ViewportRenderer::new(Instant::now);
+        let mut renderer = ViewportRenderer::new(Instant::now, Arc::default());
         let mut statistics = Statistics::default();
         let first = renderer.draw(&wanted, &this).unwrap();
         statistics.note(&first, 1);
@@ -367,7 +374,7 @@ mod tests {
     fn a_border_runs_round_all_pixels_of_an_item_and_no_others() {
         let wanted = snapshot(Size::new(160, 120));
         let (size, item) = (wanted.shot.size, ItemId::Object(wanted.shot.view.object.unwrap()));
-        let mut renderer = ViewportRenderer::new(Instant::now);
+        let mut renderer = ViewportRenderer::new(Instant::now, Arc::default());
         renderer.draw(&wanted, &this).unwrap();
         let places = || (0..size.height).flat_map(|y| (0..size.width).map(move |x| (x, y)));
         let own: Vec<bool> = places()
@@ -392,7 +399,7 @@ mod tests {
 
     #[test]
     fn a_snapshot_with_the_same_picture_is_not_drawn_again() {
-        let mut renderer = ViewportRenderer::new(Instant::now);
+        let mut renderer = ViewportRenderer::new(Instant::now, Arc::default());
         let mut wanted = snapshot(Size::new(16, 12));
         assert!(renderer.draw(&wanted, &this).is_some());
         wanted.shot.view.subject = marraztu_core::scene::Subject::Light;
@@ -405,7 +412,7 @@ mod tests {
 
     #[test]
     fn while_a_slow_scene_moves_it_is_drawn_with_less_and_when_it_is_still_with_all() {
-        let mut renderer = ViewportRenderer::new(slow);
+        let mut renderer = ViewportRenderer::new(slow, Arc::default());
         let still = snapshot(Size::new(161, 120));
         let first = renderer.draw(&still, &this).unwrap();
         assert_eq!((first.reduction, first.image.size), (Reduction::NONE, [161, 120]));
@@ -429,7 +436,7 @@ mod tests {
 
     #[test]
     fn a_picture_of_half_the_size_is_asked_at_the_pixels_of_the_whole() {
-        let mut renderer = ViewportRenderer::new(slow);
+        let mut renderer = ViewportRenderer::new(slow, Arc::default());
         let still = snapshot(Size::new(160, 120));
         renderer.draw(&still, &this).unwrap();
         let item = ItemId::Object(still.shot.view.object.unwrap());
@@ -456,7 +463,7 @@ mod tests {
 
     #[test]
     fn a_newer_frame_cancels_a_slow_one_but_every_second_one_is_finished() {
-        let mut renderer = ViewportRenderer::new(slow);
+        let mut renderer = ViewportRenderer::new(slow, Arc::default());
         let wanted = snapshot(Size::new(160, 120));
         let first = renderer.draw(&wanted, &newer);
         // The first frame's time was unknown, so it may have been finished or cancelled.
@@ -474,7 +481,7 @@ mod tests {
 
     #[test]
     fn only_changed_parts_are_drawn_again() {
-        let mut renderer = ViewportRenderer::new(Instant::now);
+        let mut renderer = ViewportRenderer::new(Instant::now, Arc::default());
         let mut wanted = snapshot(Size::new(640, 480));
         renderer.draw(&wanted, &this).unwrap();
         let (id, _) = wanted.shot.scene.objects.iter().next().unwrap();
@@ -482,7 +489,7 @@ mod tests {
         command.unwrap().apply(&mut wanted.shot.scene).unwrap();
         let drawn = renderer.draw(&wanted, &this).unwrap();
         assert!((1..40).contains(&drawn.changes.tiles()), "{:?}", drawn.changes);
-        let mut fresh = ViewportRenderer::new(Instant::now);
+        let mut fresh = ViewportRenderer::new(Instant::now, Arc::default());
         let all = fresh.draw(&wanted, &this).unwrap();
         assert_eq!(all.changes.tiles(), 80);
         assert!(all.image.pixels == drawn.image.pixels);

@@ -11,6 +11,7 @@ use super::jobs::{Answers, Elsewhere, Job};
 use crate::app::state::laboratory::{Compare, Judged};
 use crate::app::tasks::{Outcome, Task};
 use crate::app::viewport::comparison::{Compared, Drawing, draw};
+use marraztu_core::accuracy::Settings;
 use marraztu_io as io;
 
 impl App {
@@ -64,7 +65,11 @@ impl App {
     fn compared_now(&self) -> Option<Compared> {
         let lab = &self.state.lab;
         let size = self.viewport.size().filter(|_| lab.compare != Compare::Off)?;
-        Some(Compared { shot: self.state.shot(size), against: lab.reference })
+        let shot = self.state.shot(size);
+        // The picture at rest is compared, which the window shows, too.
+        let samples = self.state.refined_to().unwrap_or(shot.settings.samples);
+        let settings = Settings { samples, ..shot.settings };
+        Some(Compared { shot: shot.with(settings), against: lab.reference })
     }
 
     /// Shows a finished pair, unless it belongs to another scene.

@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::orders::{Made, Order};
 use crate::app::drawing::worker::message::{read, write};
 use crate::app::viewport::comparison::{Compared, Pair, draw};
-use marraztu_core::accuracy::{Axis, Settings, Shot};
+use marraztu_core::accuracy::{Axis, Samples, Settings, Shot};
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{Scene, View};
 use marraztu_io::{Known, Progress, Sources, scene_of_message, scene_to_message};
@@ -43,7 +43,13 @@ impl JobKind {
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum Job {
     /// Measuring axes in a scene.
-    Sweep { scene: String, size: Size, axes: Vec<String>, thoroughness: String },
+    Sweep {
+        scene: String,
+        size: Size,
+        axes: Vec<String>,
+        thoroughness: String,
+        refined: Option<Samples>,
+    },
     /// Measuring the suite.
     Suite,
     /// Making a file.
@@ -80,7 +86,8 @@ impl Job {
         let scene = scene_to_message((scene, view, &question.current), None).ok()?;
         let axes = question.axes.iter().map(|axis| axis.key.to_owned()).collect();
         let thoroughness = question.thoroughness.word.to_owned();
-        Some(Self::Sweep { scene, size: *size, axes, thoroughness })
+        let refined = question.refined;
+        Some(Self::Sweep { scene, size: *size, axes, thoroughness, refined })
     }
 
     /// Describes an order; `None` if its scene cannot be sent.
@@ -115,8 +122,8 @@ pub fn do_job(job: &[u8], tell: Arc<dyn Fn(String) + Send + Sync>) -> Vec<u8> {
     let opened = |scene: &str| scene_of_message(scene, None, &Known::default()).ok();
     let clock = &mut WallClock::default();
     let end = match serde_json::from_slice(job) {
-        Ok(Job::Sweep { scene, size, axes, thoroughness }) => {
-            prepared(&scene, size, &axes, &thoroughness).map(|(mut studio, question)| {
+        Ok(Job::Sweep { scene, size, axes, thoroughness, refined }) => {
+            prepared(&scene, size, (&axes, &thoroughness, refined)).map(|(mut studio, question)| {
                 let progress = Progress::new();
                 let watch = Watch::default().with(&progress);
                 let tell = &mut |findings: &Findings| {
@@ -169,14 +176,13 @@ fn telling(tell: Arc<dyn Fn(String) + Send + Sync>) -> Progress {
 fn prepared(
     scene: &str,
     size: Size,
-    axes: &[String],
-    thoroughness: &str,
+    (axes, thoroughness, refined): (&[String], &str, Option<Samples>),
 ) -> Option<(Studio, Question)> {
     let (scene, view, current) = scene_of_message(scene, None, &Known::default()).ok()?;
     let axes = axes.iter().filter_map(|key| Axis::named(key)).collect();
     let thoroughness = Thoroughness::named(thoroughness)?;
     let studio = Studio::new(Shot { scene, view, settings: current, size });
-    Some((studio, Question { current, axes, thoroughness }))
+    Some((studio, Question { current, axes, thoroughness, refined }))
 }
 
 /// The receiver of the result of the other instance.
@@ -285,7 +291,6 @@ mod tests {
     use super::*;
     use crate::app::documents::picture_dialog::{PictureChoices, Purpose};
     use crate::app::editor::orders::Content;
-    use marraztu_core::accuracy::Samples;
 
     fn orders(folder: &Path) -> Vec<Order> {
         let size = Size::new(64, 48);

@@ -13,8 +13,8 @@ use egui::Context;
 use super::App;
 use super::jobs::{Answers, Elsewhere, Job, so_far};
 use crate::app::actions::LabRequest;
-use crate::app::state::State;
 use crate::app::state::laboratory::Compare;
+use crate::app::state::{DrawingChoices, State};
 use crate::app::tasks::{Outcome, Task};
 use marraztu_core::accuracy::{AXES, Axis};
 use marraztu_core::base::image::Size;
@@ -26,7 +26,7 @@ use marraztu_lab::pairs::{Touch, Unmeasured, Watch};
 use marraztu_lab::picture_source::{PictureSource as _, Reference, Studio};
 use marraztu_lab::report::Report;
 use marraztu_lab::suite::{self, SUITE, SuiteDetail, SuiteScene};
-use marraztu_lab::sweep::{Findings, Question, sweep};
+use marraztu_lab::sweep::{Findings, Question, Verdict, sweep};
 use marraztu_lab::timing::WallClock;
 
 /// The background work of the laboratory.
@@ -46,6 +46,8 @@ pub(crate) struct Work {
     /// The axis of a new lesson, and the size of the picture in the last frame: the axis is
     /// measured once the lesson's card has given the picture its final size.
     lesson: Option<(&'static Axis, Option<Size>)>,
+    /// The times that the lesson was measured again, because the machine was too busy.
+    tries: u8,
     /// The command that repeats the measurement.
     command: String,
     /// When the window was last drawn.
@@ -63,6 +65,9 @@ const REST: Duration = Duration::from_millis(250);
 
 /// The time after a press in which the window is not made to wait.
 const USED: Duration = Duration::from_secs(1);
+
+/// The times that a lesson is measured again on a busy machine.
+const TRIES: u8 = 2;
 
 /// The number of pairs between two drawings of the window.
 const PAIRS_BETWEEN: u32 = 3;
@@ -204,7 +209,9 @@ impl App {
         // The scene is kept to detect later that the results are out of date.
         let measured = Some(shot.clone());
         let only = (axes.len() == 1).then(|| axes[0].key);
-        let question = Question { current: shot.settings, axes, thoroughness };
+        let DrawingChoices { refines, refined, .. } = self.state.drawing;
+        let refined = refines.then_some(refined);
+        let question = Question { current: shot.settings, axes, thoroughness, refined };
         let job = if self.draws_elsewhere { Job::sweep(&shot, &question) } else { None };
         // A cancelled sweep may still report findings, so each sweep has a separate cell.
         self.lab.so_far = Arc::default();
@@ -351,7 +358,13 @@ impl App {
         }
         match outcome {
             Outcome::Running => return ctx.request_repaint_after(self.lab.rest_now()),
-            Outcome::Done(Ok(findings)) => self.show_findings(findings),
+            Outcome::Done(Ok(findings)) => {
+                let is_busy = findings.points.iter().any(|it| it.verdict == Verdict::Busy);
+                self.show_findings(findings);
+                if is_busy {
+                    self.measure_lesson_again(ctx);
+                }
+            }
             Outcome::Done(Err(Unmeasured::Cancelled)) => {
                 self.state.tell(Some("Measuring was cancelled".to_owned()));
                 self.state.lab.is_rough = self.state.lab.report.is_some();
@@ -379,6 +392,17 @@ impl App {
                 ctx.request_repaint();
             }
             None => {}
+        }
+    }
+
+    /// Measures the lesson on show once more, because the machine was too busy, a few times at most.
+    fn measure_lesson_again(&mut self, ctx: &Context) {
+        if let Some(lesson) = self.state.lab.lesson
+            && self.lab.tries < TRIES
+        {
+            self.lab.tries += 1;
+            self.lab.lesson = Some((lesson.axis(), None));
+            ctx.request_repaint();
         }
     }
 
@@ -447,6 +471,7 @@ impl App {
                 if !own.lab.away {
                     self.waiting_scene = Some(Box::new(own));
                 }
+                self.lab.tries = 0;
                 if !self.state.lab.costs.contains_key(axis.key) {
                     self.lab.lesson = Some((axis, None));
                 }

@@ -47,7 +47,7 @@ use crate::app::fonts;
 use crate::app::input::keyboard::{Keyboard, Press};
 use crate::app::panels::{Panel, arrange, notices, pixel};
 use crate::app::state::layout::NARROW;
-use crate::app::state::{Notice, State};
+use crate::app::state::{Late, Notice, State};
 use crate::app::theme;
 use crate::app::viewport::comparison::Comparison;
 use crate::app::viewport::{Purpose, Viewport};
@@ -354,8 +354,16 @@ impl App {
             if let Some(refined) = &news.refined {
                 self.state.statistics.refined = refined.refined;
             }
-            let late = worker.drawing_for().is_some_and(|time| time >= LATE);
-            self.state.statistics.late = late && !self.state.is_animated();
+            if news.drawn.is_some() {
+                self.state.dial.drawn = worker.last().map(|last| last.shot.settings);
+            }
+            let late = worker.drawing_for().filter(|time| *time >= LATE);
+            let late = late.filter(|_| !self.state.is_animated());
+            let fraction = worker.painted();
+            self.state.statistics.late = late.map(|spent| Late { spent, fraction });
+            if late.is_some() {
+                ctx.request_repaint_after(LATE);
+            }
             let failed = news.failed;
             self.viewport.hear(ctx, &self.state, news, requests);
             if failed {

@@ -80,6 +80,7 @@ impl Arrangement {
             contents(*panel)(&mut child, state, requests);
         }
         dial::show(ui, self.places.picture, state, requests);
+        dial::progress_ui(ui, self.places.picture, state, requests);
         greeting::show(ui, self.places.picture, state, requests);
         splitters::show(ui, state, self.area, &self.places, requests);
     }

@@ -5,6 +5,8 @@
 //! figures are grey. A click draws with the settings of a row. Over a low picture, the dial is one
 //! row, which unfolds the others.
 
+use std::time::Duration;
+
 use egui::{Align2, Area, ComboBox, Frame, Id, Order, Rect, RichText, Role, Sense};
 use egui::{TextStyle, Ui, WidgetInfo, pos2, vec2};
 
@@ -17,12 +19,13 @@ use crate::app::widgets::controls::{self, focus_ring, icon_at, put_text, right_t
 use crate::app::widgets::icons::Icon;
 use crate::app::widgets::regions;
 use marraztu_core::accuracy::{ACCURACY_PRESETS, AccuracyPreset, Settings};
-use marraztu_lab::dial::{Figures, error_in_words, in_words};
+use marraztu_lab::dial::{Figures, error_in_words, in_words, is_steady};
+use marraztu_lab::estimate::Estimate;
 
-const WIDTH: f32 = 216.0;
+const WIDTH: f32 = 268.0;
 
-/// The right ends of the columns of time and error.
-const COLUMNS: [f32; 2] = [152.0, WIDTH - 6.0];
+/// The right ends of the columns of samples, time and error.
+const COLUMNS: [f32; 3] = [116.0, 182.0, WIDTH - 6.0];
 
 /// The dial is hidden over a smaller picture.
 const LEAST: egui::Vec2 = vec2(330.0, 100.0);
@@ -53,6 +56,32 @@ pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Request
                 contents(ui, state, requests);
             }
             regions::follow_focus(ui);
+        });
+    });
+}
+
+/// Pictures that take longer show their progress over the picture.
+const SLOW: Duration = Duration::from_secs(1);
+
+/// Shows the progress of a slow picture, with a button that returns to the settings before.
+pub(crate) fn progress_ui(ui: &Ui, picture: Rect, state: &State, requests: &mut Requests) {
+    let Some(late) = state.statistics.late.filter(|late| late.spent >= SLOW) else { return };
+    let now = state.settings;
+    let before = state.dial.drawn.filter(|before| *before != now).unwrap_or_default();
+    let area = Area::new(Id::unique("slow picture")).order(Order::Middle).constrain_to(picture);
+    let at = picture.center_bottom() - vec2(0.0, 12.0);
+    area.pivot(Align2::CENTER_BOTTOM).fixed_pos(at).show(ui.ctx(), |ui| {
+        Frame::popup(ui.style()).show(ui, |ui| {
+            ui.horizontal(|ui| {
+                let rows = rows(state);
+                let label = rows.iter().find(|row| row.settings == now).map_or("", |row| row.label);
+                ui.label(format!("Drawing {label}: {}", late.in_words()));
+                let hint = format!("Returns to the settings before: {}", before.in_words());
+                let cancel = ui.add_enabled(before != now, egui::Button::new("Cancel"));
+                if cancel.on_hover_text(hint).clicked() {
+                    requests.push(Request::Settings(before.modelled_as(&now)));
+                }
+            });
         });
     });
 }
@@ -102,18 +131,15 @@ fn head_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let (rect, _) = ui.allocate_exact_size(vec2(WIDTH, theme::ROW - 2.0), Sense::hover());
     let weak = ui.visuals().weak_text_color();
     let heads = [
-        (
-            "time",
-            "Milliseconds of a picture of this view, as it is shown when nothing moves: refined, \
-             while the laboratory measures with one sample per pixel",
-        ),
+        ("samples", "The samples of each pixel, when nothing moves and the picture is refined"),
+        ("time", "Milliseconds of this picture; ~ if other programs keep the machine too busy"),
         (
             "error",
             "How far the picture is from the ideal, on average, in steps of colours from 0 to 255 \
-             (RMSE). Less than 1 is hard to see.",
+             (RMSE), with its 95% interval. Less than 1 is hard to see.",
         ),
     ];
-    let title = controls::text(ui, "Accuracy", TextStyle::Body, 80.0);
+    let title = controls::text(ui, "Accuracy", TextStyle::Body, 60.0);
     put_text(ui, rect.with_min_x(rect.left() + 4.0), title, weak);
     for ((head, hint), right) in heads.into_iter().zip(COLUMNS) {
         let cell = column(rect, right);
@@ -121,7 +147,7 @@ fn head_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
         ui.interact(cell, ui.scope_id().with(("head", head)), Sense::hover()).on_hover_text(hint);
     }
     let square =
-        Rect::from_center_size(pos2(rect.left() + 72.0, rect.center().y), vec2(20.0, 18.0));
+        Rect::from_center_size(pos2(rect.left() + 70.0, rect.center().y), vec2(20.0, 18.0));
     let response = ui.interact(square, ui.scope_id().with("loupe"), Sense::click());
     if state.loupe {
         ui.painter().rect_filled(square, 3.0, ui.visuals().selection.bg_fill);
@@ -161,12 +187,25 @@ fn rows(state: &State) -> Vec<Row> {
 impl Row {
     /// Returns the label, with the figures if they are measured.
     fn name(&self, state: &State) -> String {
+        let [_, time, error] = self.texts(state);
+        let samples = state.dial.at_rest(&self.settings, state).samples_in_words();
         match state.dial.of(&self.settings) {
-            Some(Figures { ms, error: Some(error), .. }) => {
-                format!("{}: {}, error {}", self.label, milliseconds(ms), error_in_words(error))
+            Some(Figures { error: Some(_), .. }) => {
+                format!("{}, {samples}: {time}, error {error}", self.label)
             }
             _ => self.label.to_owned(),
         }
+    }
+
+    /// Returns the samples, the time and the error of the picture.
+    fn texts(&self, state: &State) -> [String; 3] {
+        let unknown = || "...".to_owned();
+        let samples = state.dial.at_rest(&self.settings, state).samples_in_words();
+        let samples = samples.split(' ').next().unwrap_or_default().to_owned();
+        let figures = state.dial.of(&self.settings);
+        let time = figures.map_or_else(unknown, |it| milliseconds(&it.ms));
+        let error = figures.and_then(|it| error_in_words(&it.error?));
+        [samples, time, error.unwrap_or_else(unknown)]
     }
 
     /// Shows the row. Returns whether it was clicked.
@@ -174,7 +213,7 @@ impl Row {
         let is_on = self.settings == state.settings;
         let (rect, _) = ui.allocate_exact_size(vec2(WIDTH, theme::ROW - 2.0), Sense::hover());
         let response = ui.interact(rect, id, regions::sense(Sense::click(), is_stop));
-        let (figures, name) = (state.dial.of(&self.settings), self.name(state));
+        let (texts, name) = (self.texts(state), self.name(state));
         response.widget_info(|| WidgetInfo::selected(Role::RadioButton, true, is_on, &name));
         let ink = row_ground(ui, &response, is_on);
         if is_on {
@@ -184,15 +223,12 @@ impl Row {
         }
         let label = controls::text(ui, self.label, TextStyle::Body, 80.0);
         put_text(ui, rect.with_min_x(rect.left() + 8.0), label, ink);
-        // Figures of another picture are grey.
-        let ink = if state.dial.current { ink } else { ui.visuals().weak_text_color() };
-        let texts = match figures {
-            None => ["...".to_owned(), "...".to_owned()],
-            Some(Figures { ms, error, .. }) => {
-                [milliseconds(ms), error.map_or_else(|| "...".to_owned(), error_in_words)]
-            }
-        };
-        for (text, right) in texts.iter().zip(COLUMNS) {
+        // Figures of another picture, and times of a busy machine, are grey.
+        let weak = ui.visuals().weak_text_color();
+        let is_steady = state.dial.of(&self.settings).is_some_and(|it| is_steady(&it.ms));
+        let inks = [ink, if is_steady { ink } else { weak }, ink];
+        for ((text, right), ink) in texts.iter().zip(COLUMNS).zip(inks) {
+            let ink = if state.dial.current { ink } else { weak };
             right_text(ui, column(rect, right), text, TextStyle::Body, ink);
         }
         focus_ring(ui, rect, &response);
@@ -208,15 +244,17 @@ impl Row {
     }
 }
 
-/// Formats a time: "0.42 ms", "12 ms", "3.1 s", "75 s".
-fn milliseconds(ms: f64) -> String {
-    match ms {
+/// Formats a time: "0.42 ms", "12 ms", "3.1 s", "75 s"; "~12 ms" if it is uncertain.
+fn milliseconds(time: &Estimate) -> String {
+    let ms = time.value;
+    let text = match ms {
         9950.0.. => format!("{:.0} s", ms / 1e3),
         1000.0.. => format!("{:.1} s", ms / 1e3),
         9.95.. => format!("{ms:.0} ms"),
         1.0.. => format!("{ms:.1} ms"),
         _ => format!("{ms:.2} ms"),
-    }
+    };
+    if is_steady(time) { text } else { format!("~{text}") }
 }
 
 fn column(row: Rect, right: f32) -> Rect {

@@ -49,7 +49,7 @@ fn contents(ui: &mut Ui, lesson: &'static Lesson, state: &State, requests: &mut 
     ui.add(egui::Label::new(&lesson.look).wrap());
     ui.add_space(theme::GAP);
     axis_ui(ui, lesson.axis(), state, requests);
-    cost_ui(ui, lesson, state);
+    cost_ui(ui, lesson, state, requests);
     ui.add_space(theme::GAP);
     ui.horizontal(|ui| {
         let all = lessons();
@@ -75,7 +75,7 @@ fn contents(ui: &mut Ui, lesson: &'static Lesson, state: &State, requests: &mut 
 }
 
 /// Shows what the chosen choice costs and gives, as measured on this computer.
-fn cost_ui(ui: &mut Ui, lesson: &Lesson, state: &State) {
+fn cost_ui(ui: &mut Ui, lesson: &Lesson, state: &State, requests: &mut Requests) {
     let cost = state.lab.costs.get(lesson.axis.as_str());
     let chosen = lesson.axis().chosen(&state.settings);
     let line = cost.and_then(|cost| cost.choices.get(chosen.word));
@@ -93,9 +93,21 @@ fn cost_ui(ui: &mut Ui, lesson: &Lesson, state: &State) {
     let lines = 2.0 * ui.text_style_height(&TextStyle::Body);
     ui.allocate_ui(vec2(ui.available_width(), lines), |ui| {
         ui.set_min_height(lines);
-        let label = ui.add(egui::Label::new(RichText::new(text).weak()).wrap());
-        if let Some(cost) = cost {
-            label.on_hover_text(&cost.all);
-        }
+        ui.horizontal_top(|ui| {
+            let button = ui.spacing().interact_size.y * 5.0;
+            let width = ui.available_width() - button;
+            ui.allocate_ui(vec2(width, lines), |ui| {
+                let label = ui.add(egui::Label::new(RichText::new(text).weak()).wrap());
+                if let Some(cost) = cost {
+                    label.on_hover_text(&cost.all);
+                }
+            });
+            let again =
+                ui.add_enabled(state.lab.running.is_none(), egui::Button::new("Measure again"));
+            if again.on_hover_text("Measures every choice again, on this machine").clicked() {
+                let key = lesson.axis().key;
+                requests.push(Request::Lab(LabRequest::MeasureAxis(key)));
+            }
+        });
     });
 }

@@ -179,8 +179,8 @@ fn parts(state: &State) -> Vec<String> {
         parts.push(format!("while moving: {}{lost}", statistics.reduction.words()));
     }
     // The time of the last picture would be misleading while a slow one is drawn.
-    if statistics.late {
-        parts.push("drawing".to_owned());
+    if let Some(late) = &statistics.late {
+        parts.push(format!("drawing {}", late.in_words()));
         return parts;
     }
     parts.extend(refined(state));
@@ -324,7 +324,10 @@ pub(crate) fn middle_elided(name: &str, longest: usize) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use super::*;
+    use crate::app::state::Late;
 
     #[test]
     fn a_long_name_keeps_its_beginning_and_its_end() {
@@ -353,8 +356,9 @@ mod tests {
         state.statistics.pictures = 1;
         let said = |state: &State| parts(state).last().cloned().unwrap_or_default();
         assert!(said(&state).ends_with("ms"));
-        state.statistics.late = true;
-        assert_eq!(said(&state), "drawing");
+        let (spent, fraction) = (Duration::from_secs(2), Some(0.25));
+        state.statistics.late = Some(Late { spent, fraction });
+        assert_eq!(said(&state), "drawing 25%, about 6 s left");
         assert!(!parts(&state).iter().any(|part| part.starts_with("refin")));
     }
 

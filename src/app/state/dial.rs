@@ -17,6 +17,8 @@ pub struct DialState {
     pub current: bool,
     /// The last settings in this scene that no preset has, to return to.
     pub own: Option<Settings>,
+    /// The settings of the last finished picture.
+    pub drawn: Option<Settings>,
 }
 
 impl DialState {
@@ -30,6 +32,12 @@ impl DialState {
         let last = self.last.as_ref()?;
         let settings = last.of.at_rest(&settings.modelled_as(&last.of.shot.settings));
         last.figures.iter().find(|figures| figures.settings == settings).copied()
+    }
+
+    /// Returns settings as the window shows them at rest.
+    pub(crate) fn at_rest(&self, settings: &Settings, state: &State) -> Settings {
+        let DialWish { refined, .. } = state.wish();
+        refined.map_or(*settings, |samples| settings.refined_to(samples))
     }
 
     /// Keeps settings that no preset has.

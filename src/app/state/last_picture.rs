@@ -20,8 +20,8 @@ pub struct Statistics {
     pub size: Size,
     /// The number of pictures drawn.
     pub pictures: u64,
-    /// Whether the next picture takes so long that this one is out of date.
-    pub late: bool,
+    /// The next picture, if it takes so long that this one is out of date.
+    pub late: Option<Late>,
     /// The number of pictures shown in the last second.
     pub rate: u32,
     /// The number of triangles drawn.
@@ -36,6 +36,32 @@ pub struct Statistics {
     pub changes: Option<Damage>,
 }
 
+/// A picture that takes long.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Late {
+    /// The time since it was requested.
+    pub spent: Duration,
+    /// The finished fraction, if it is known.
+    pub fraction: Option<f64>,
+}
+
+impl Late {
+    /// Describes the progress: "34%, about 12 s left". The time left is known after a while.
+    pub fn in_words(&self) -> String {
+        let Some(fraction) = self.fraction else { return "...".to_owned() };
+        let percent = format!("{:.0}%", fraction * 100.0);
+        let left = self.spent.as_secs_f64() * (1.0 - fraction) / fraction;
+        match self.spent >= Self::TOLD {
+            true if left >= 100.0 => format!("{percent}, about {:.0} minutes left", left / 60.0),
+            true => format!("{percent}, about {:.0} s left", left.ceil()),
+            false => percent,
+        }
+    }
+
+    /// The time after which the time left is known.
+    const TOLD: Duration = Duration::from_secs(1);
+}
+
 impl Statistics {
     /// Records a picture, the `rate`th in the last second.
     pub(crate) fn note(&mut self, drawn: &Drawn, rate: u32) {
@@ -46,7 +72,7 @@ impl Statistics {
             time: if is_new { drawn.time } else { self.time },
             size: Size::new(width, height),
             pictures: self.pictures + 1,
-            late: false,
+            late: None,
             rate,
             triangles: drawn.triangles,
             reduction: drawn.reduction,

@@ -17,7 +17,7 @@ use crate::app::panels::{OpenPanels, Panel};
 use crate::app::widgets::text::file_name;
 use dial::DialState;
 use laboratory::Laboratory;
-pub use last_picture::{ExplainedPixel, Measured, Plan, Statistics};
+pub use last_picture::{ExplainedPixel, Late, Measured, Plan, Statistics};
 use layout::Layout;
 use marraztu_core::accuracy::{Samples, Settings, Shot};
 use marraztu_core::base::image::Size;
@@ -25,6 +25,7 @@ use marraztu_core::edit::several::Others;
 use marraztu_core::edit::{Gesture, GesturePhase, History, selection};
 use marraztu_core::scene::{ItemId, Light, LightId, Object, Scene, UpAxis, View};
 use marraztu_io::{Fingerprint, Helpers, Sources, WindowState, is_example};
+use marraztu_lab::picture_source::Reference;
 use marraztu_lab::report::Report;
 pub use notices::{Message, MissingFiles, Notice, Offer, Tone};
 
@@ -253,11 +254,13 @@ impl State {
     }
 
     /// Returns the samples per pixel for refinement while the user is idle; `None` if the picture
-    /// is shown with the samples of the settings. Comparisons and measurements always use the
-    /// settings.
+    /// is shown with the samples of the settings. A comparison of one axis alone uses the settings,
+    /// since more samples would hide what the axis does; so do measurements.
     pub fn refined_to(&self) -> Option<Samples> {
         let DrawingChoices { refines, refined, .. } = self.drawing;
-        let is_alone = self.lab.compare == laboratory::Compare::Off && self.lab.running.is_none();
+        let is_whole =
+            self.lab.compare == laboratory::Compare::Off || self.lab.reference == Reference::Ideal;
+        let is_alone = is_whole && self.lab.running.is_none();
         let more = refined.count() > self.settings.samples.count();
         let wanted = refines && is_alone && more && !self.is_animated();
         (wanted && self.settings.can_refine()).then_some(refined)

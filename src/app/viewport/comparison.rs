@@ -135,7 +135,9 @@ impl Comparison {
         let name = state.lab.reference.name(&state.settings);
         let name = if self.current { name } else { format!("{name}: drawing") };
         plate_ui(ui, left.with_max_x(x - 4.0), Align2::RIGHT_TOP, name);
-        plate_ui(ui, rect.with_min_x(x + 4.0), Align2::LEFT_TOP, "drawn".to_owned());
+        let samples = self.drawn.as_ref().map(|pair| pair.of.shot.settings.samples_in_words());
+        let drawn = samples.map_or_else(|| "drawn".to_owned(), |it| format!("drawn, {it}"));
+        plate_ui(ui, rect.with_min_x(x + 4.0), Align2::LEFT_TOP, drawn);
     }
 
     fn error_ui(&mut self, ui: &Ui, rect: Rect, factor: u16) {

@@ -192,6 +192,15 @@ impl Settings {
         Self { samples: if is_more && self.can_refine() { samples } else { self.samples }, ..self }
     }
 
+    /// Describes the samples of a picture: "1 sample", "16 samples", "1/4 sample".
+    pub fn samples_in_words(&self) -> String {
+        match (self.resolution, self.samples) {
+            (Resolution::Half, _) => "1/4 sample".to_owned(),
+            (Resolution::Full, Samples::One) => "1 sample".to_owned(),
+            (Resolution::Full, samples) => format!("{} samples", samples.count()),
+        }
+    }
+
     /// The samples per pixel of a picture in a file.
     pub const REFINED: Samples = Samples::Sixteen;
 

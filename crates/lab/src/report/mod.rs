@@ -15,6 +15,7 @@ use super::candidates::Group;
 use super::error::{Measure, Region};
 use super::front::{Point, fastest_within, front, most_exact_within};
 use super::sweep::{Findings, Measured, Row, Verdict};
+use marraztu_core::accuracy::Settings;
 
 /// The results of a sweep, with the options of the report.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -130,9 +131,16 @@ impl Report {
         self.budgets.ms.map(|most| most_exact_within(&points, most).map(|i| places[i]))
     }
 
-    /// Returns the index of the point with the current settings.
-    pub fn current(&self) -> Option<usize> {
-        self.findings.points.iter().position(|point| point.settings == self.findings.current)
+    /// Returns whether a row shows the current settings, moving or at rest.
+    pub fn is_current(&self, row: &Row) -> bool {
+        row.chosen == self.findings.current
+    }
+
+    /// Returns the settings to choose for the picture of a point.
+    pub fn chosen(&self, point: usize) -> Settings {
+        let rows = &self.findings.rows;
+        let named = rows.iter().find(|row| row.point == point);
+        named.map_or(self.findings.points[point].settings, |row| row.chosen)
     }
 
     /// Formats the report as JSON.

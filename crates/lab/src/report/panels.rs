@@ -7,13 +7,15 @@
 
 use super::{Report, brief};
 use crate::sweep::Row;
-use marraztu_core::accuracy::{AXES, Axis, AxisKind};
+use marraztu_core::accuracy::{AXES, Axis, AxisKind, Settings};
 
 /// A choice in a panel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PanelMark {
     /// The index of the report's point.
     pub point: usize,
+    /// The settings to choose for it.
+    pub chosen: Settings,
     /// The position on the scales.
     pub at: [f64; 2],
     /// The confidence interval of the time on the `x` scale.
@@ -85,16 +87,16 @@ impl Panels {
         let errors = of_axes().map(|row| report.error(row));
         let errors = errors.chain(overview.iter().map(|point| points[*point].error));
         let (y, zero) = error_scale(report, errors);
-        let current = report.current();
-        let mark = |point: usize, error: f64, label: String| PanelMark {
+        let mark = |point: usize, chosen: Settings, error: f64, label: String| PanelMark {
             point,
+            chosen,
             at: [time(point), if error > 0.0 { libm::log10(error) } else { zero }],
             noise: findings.noise_of(point).map(|ratio| libm::log10(ratio.max(1e-3))),
             label,
             is_default: point == 0,
-            current: current == Some(point),
+            current: chosen == findings.current,
         };
-        let of_row = |row: &Row| mark(row.point, report.error(row), row.name.clone());
+        let of_row = |row: &Row| mark(row.point, row.chosen, report.error(row), row.name.clone());
         let panel = |axis: &'static Axis| Panel {
             axis: Some(axis),
             title: axis.label.to_owned(),
@@ -104,7 +106,9 @@ impl Panels {
             },
             marks: findings.rows_of(axis).map(of_row).collect(),
         };
-        let named = |i: &usize| mark(*i, points[*i].error, findings.points[*i].name.clone());
+        let named = |i: &usize| {
+            mark(*i, report.chosen(*i), points[*i].error, findings.points[*i].name.clone())
+        };
         Self {
             overview: Panel {
                 axis: None,

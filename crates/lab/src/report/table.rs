@@ -71,7 +71,7 @@ pub fn text(report: &Report) -> String {
         "coverage",
         "FLIP"
     );
-    let (front, current) = (report.front(), report.current());
+    let front = report.front();
     // Print a heading wherever the group changes.
     let mut last = String::new();
     for row in report.rows() {
@@ -83,7 +83,7 @@ pub fn text(report: &Report) -> String {
         // The marks are explained below the table.
         let marks = [
             if row.point == 0 { '*' } else { ' ' },
-            if current == Some(row.point) { '>' } else { ' ' },
+            if report.is_current(row) { '>' } else { ' ' },
             if front.contains(&row.point) { '+' } else { ' ' },
         ];
         let marks: String = marks.iter().collect();
@@ -306,7 +306,7 @@ const FIGURES: [Column; 23] = [
 
 /// Returns the cells of the table; the first row contains the column names.
 fn cells(report: &Report) -> Vec<Vec<String>> {
-    let (front, current) = (report.front(), report.current());
+    let front = report.front();
     // One column per axis lets spreadsheets filter by choice.
     let axes = AXES.iter().map(|axis| axis.key);
     let head = ["group", "name"].into_iter().chain(axes).chain(FIGURES.map(|(name, _)| name));
@@ -318,7 +318,7 @@ fn cells(report: &Report) -> Vec<Vec<String>> {
             point,
             noise: report.findings.noise_of(row.point),
             front: front.contains(&row.point),
-            current: current == Some(row.point),
+            current: report.is_current(row),
         };
         let names = [heading(row), row.name.clone()].into_iter();
         let axes = AXES.iter().map(|axis| axis.chosen(&point.settings).word.to_owned());

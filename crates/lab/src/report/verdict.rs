@@ -2,13 +2,14 @@
 //!
 //! Each choice is compared with the default of its axis: its time by the verdict on their ratio
 //! ([`Findings::noise_of`](crate::sweep::Findings::noise_of) defines the noise), its error by the
-//! RMSE over all pixels against the reference of the axis. An error counts as cut or raised if it
-//! changes by 5%. The rules cover every choice that differs in time or error beyond the noise, so
-//! none is omitted.
+//! RMSE over all pixels. The verdict on a scene quotes errors against the ideal, as the overview
+//! and the dial do; the verdict on an axis quotes errors against the reference of the axis, as its
+//! plot does. An error counts as cut or raised if it changes by 5%. The rules cover every choice
+//! that differs in time or error beyond the noise, so none is omitted.
 
 use super::Report;
-use crate::sweep::{Findings, Measured, Row, TOO_BUSY, Verdict};
-use marraztu_core::accuracy::{AXES, Axis, AxisKind, Choice};
+use crate::sweep::{Against, Findings, Measured, Row, TOO_BUSY, Verdict};
+use marraztu_core::accuracy::{AXES, Axis, AxisKind, Choice, uncapitalized};
 
 /// Changes of the error below this fraction are ignored.
 const MARGIN: f64 = 0.05;
@@ -46,19 +47,25 @@ enum Kind {
 impl Report {
     /// Summarises the figures in sentences.
     pub fn verdict(&self) -> Vec<String> {
-        let said = said(self);
+        let has_ideal = self.findings.points.first().is_some_and(|it| it.ideal.is_some());
+        let against = if has_ideal { Against::Ideal } else { Against::Axis };
+        let said = said(self, against);
         let mut sentences = told(&said);
         let is_faster = |it: &Said<'_>| it.point.verdict == Verdict::Faster;
         let nothing = if said.iter().any(is_faster) { "nothing else" } else { "nothing" };
         let noise = noise(self, self.findings.rows.iter().map(|row| row.point));
-        let noise = noise.unwrap_or_else(|| BUSY.to_owned());
-        sentences.push(match self.findings.complete {
-            true => format!("{nothing} saves more than the noise ({noise})."),
-            false => "other choices are not measured yet.".to_owned(),
+        sentences.push(match (self.findings.complete, noise) {
+            (true, Some(noise)) => format!("{nothing} saves more than the noise ({noise})."),
+            (true, None) => "this machine is too busy to tell times.".to_owned(),
+            (false, _) => "other choices are not measured yet.".to_owned(),
         });
+        sentences.extend(busy(self));
         if let Some(first) = sentences.first_mut() {
-            // Each error is against the picture that is exact in this choice.
-            *first = format!("{}, each choice alone: {first}", place(self));
+            let errors = match against {
+                Against::Ideal => "errors against the ideal",
+                Against::Axis => "errors against the picture that is exact in it",
+            };
+            *first = format!("{}, each choice alone, {errors}: {first}", place(self));
         }
         // The first sentence continues after a colon.
         sentences.iter_mut().skip(1).for_each(|sentence| *sentence = capitalized(sentence));
@@ -71,7 +78,7 @@ impl Report {
             return "A model: none of its choices is an error of another.".to_owned();
         }
         let said: Vec<Said<'_>> =
-            said(self).into_iter().filter(|it| it.axis.key == axis.key).collect();
+            said(self, Against::Axis).into_iter().filter(|it| it.axis.key == axis.key).collect();
         let noise = noise(self, self.findings.rows_of(axis).map(|row| row.point));
         let mut sentences = told(&said);
         if sentences.is_empty() {
@@ -79,8 +86,16 @@ impl Report {
         }
         sentences.extend(reasons(self, axis));
         let capital: Vec<String> = sentences.iter().map(|sentence| capitalized(sentence)).collect();
-        let noise = noise.map_or_else(|| BUSY.to_owned(), |noise| format!("noise {noise}"));
-        format!("{} ({}; {noise}.)", capital.join(" "), place(self))
+        let noise = noise.map_or_else(
+            || "this machine is too busy to tell times".to_owned(),
+            |noise| format!("noise {noise}"),
+        );
+        let exact = uncapitalized(axis.label);
+        format!(
+            "{} ({}, errors against the exact {exact}; {noise}.)",
+            capital.join(" "),
+            place(self)
+        )
     }
 
     /// Describes a choice of an axis in a line: its time and error against the default's. `None` if
@@ -112,8 +127,8 @@ impl Report {
                 format!("{} the time of", times(point.ratio.quartiles.median))
             }
         };
-        let noise = noise(self, [row.point].into_iter());
-        let noise = noise.map_or_else(String::new, |noise| format!(" (noise {noise})"));
+        let noise = percent(self.findings.noises([row.point].into_iter()));
+        let noise = format!(" (noise {noise})");
         Some(match is_model {
             // One of both is the reference.
             true => {
@@ -163,18 +178,28 @@ fn place(report: &Report) -> String {
     format!("At {width}x{height}, {samples} per pixel, on {}", report.scene)
 }
 
-/// Replaces the noise if it is too large.
-const BUSY: &str = "the machine was too busy to tell more";
+/// Counts the choices with times that cannot be told; `None` if there are none.
+fn busy(report: &Report) -> Option<String> {
+    let is_busy = |row: &&Row| report.findings.points[row.point].verdict == Verdict::Busy;
+    Some(match report.findings.rows.iter().filter(is_busy).count() {
+        0 => return None,
+        1 => "for 1 choice, this machine is too busy to tell.".to_owned(),
+        count => format!("for {count} choices, this machine is too busy to tell."),
+    })
+}
 
-/// Formats the noise of some points in per cent: "1.2%", or "1.2 to 4.5%" if they differ. `None` if
-/// the machine was too busy.
+/// Formats the noise of the points with times that can be told, in per cent. `None` if there are
+/// none.
 fn noise(report: &Report, points: impl Iterator<Item = usize>) -> Option<String> {
-    let noises = report.findings.noises(points);
-    if noises[1] > TOO_BUSY {
-        return None;
-    }
+    let is_told = |point: &usize| report.findings.points[*point].verdict == Verdict::Alike;
+    let noises = report.findings.noises(points.filter(is_told));
+    (noises[1] <= TOO_BUSY).then(|| percent(noises))
+}
+
+/// Formats noises in per cent: "1.2%", or "1.2 to 4.5%" if they differ.
+fn percent(noises: [f64; 2]) -> String {
     let [least, most] = noises.map(|it| digits((it * 100.0).max(0.1)));
-    Some(if least == most { format!("{most}%") } else { format!("{least} to {most}%") })
+    if least == most { format!("{most}%") } else { format!("{least} to {most}%") }
 }
 
 /// Writes the sentences on some choices.
@@ -198,7 +223,7 @@ fn told(said: &[Said<'_>]) -> Vec<String> {
 }
 
 /// Returns every choice that differs from the default of its axis in time or error.
-fn said(report: &Report) -> Vec<Said<'_>> {
+fn said(report: &Report, against: Against) -> Vec<Said<'_>> {
     let mut said = Vec::new();
     for axis in AXES.iter().filter(|axis| axis.kind != AxisKind::Model) {
         let finer = |word: &str| axis.choices.iter().position(|choice| choice.word == word);
@@ -207,7 +232,10 @@ fn said(report: &Report) -> Vec<Said<'_>> {
             let point = &report.findings.points[row.point];
             // The default of an axis is one of its rows.
             let default_row = report.findings.rows_of(axis).find(|row| row.point == 0);
-            let rmse = |row: &Row| row.error.whole.rmse;
+            let rmse = |row: &Row| match (against, report.findings.points[row.point].ideal) {
+                (Against::Ideal, Some(error)) => error.whole.rmse,
+                (Against::Ideal, None) | (Against::Axis, _) => row.error.whole.rmse,
+            };
             let (error, before) = (rmse(row), default_row.map_or(0.0, rmse));
             let is_finer = finer(axis.chosen(&point.settings).word) > default;
             let Some(kind) = kind(point, [error, before], is_finer) else { continue };
@@ -253,8 +281,13 @@ impl Said<'_> {
         if several { verb.to_owned() } else { format!("{verb}s") }
     }
 
-    fn error_change(&self) -> String {
-        format!("the error from {} to {} of 255", digits(self.before), digits(self.error))
+    /// Describes the effect on the error: "cuts the error from 2 to 1 of 255", if `verb` is "cut".
+    fn effect(&self, verb: &str) -> String {
+        let [before, after] = [self.before, self.error].map(digits);
+        match before == after {
+            true => format!("hardly {} the error of {after}", self.verb("change")),
+            false => format!("{} the error from {before} to {after} of 255", self.verb(verb)),
+        }
     }
 }
 
@@ -265,10 +298,8 @@ fn bought(all: &[&Said<'_>]) -> Vec<String> {
     for axis in AXES {
         let mut own = all.iter().filter(|it| it.axis.key == axis.key);
         let Some(first) = own.next() else { continue };
-        let (cost, cut) = (first.verb("cost"), first.verb("cut"));
-        let times_first = times(first.ratio());
-        let mut text =
-            format!("{} {cost} {times_first} and {cut} {}", first.name(), first.error_change());
+        let (cost, cut) = (first.verb("cost"), first.effect("cut"));
+        let mut text = format!("{} {cost} {} and {cut}", first.name(), times(first.ratio()));
         let more = |it: &&Said<'_>| {
             format!("{}: {}, {}", it.row.name, times(it.ratio()), digits(it.error))
         };
@@ -303,18 +334,21 @@ fn free(it: &Said<'_>) -> String {
     match it.point.verdict {
         Verdict::Faster => {
             let saves = it.verb("save");
-            format!("{name} {saves} {}% and {} no accuracy here.", less(it), it.verb("cost"))
+            let effect = match it.point.change.largest {
+                0 => format!("{} no byte", it.verb("change")),
+                _ if it.error < it.before => it.effect("cut"),
+                _ => it.effect("raise"),
+            };
+            format!("{name} {saves} {}% and {effect}.", less(it))
         }
         Verdict::Slower | Verdict::Alike | Verdict::Busy => {
-            let cut = it.verb("cut");
-            format!("{name} {cut} {} in the same time.", it.error_change())
+            format!("{name} {} in the same time.", it.effect("cut"))
         }
     }
 }
 
 fn saved(it: &Said<'_>) -> String {
-    let (saves, raises) = (it.verb("save"), it.verb("raise"));
-    format!("{} {saves} {}% and {raises} {}.", it.name(), less(it), it.error_change())
+    format!("{} {} {}% and {}.", it.name(), it.verb("save"), less(it), it.effect("raise"))
 }
 
 /// Returns the saved part of the time, in per cent.

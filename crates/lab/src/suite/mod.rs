@@ -197,9 +197,9 @@ fn measured(
 ) -> Result<Report, Unmeasured> {
     let (scene, view) = suite.open(detail.detail);
     let current = Settings::default();
-    let question = Question { current, axes: suite.measured(), thoroughness: detail.thoroughness };
+    let question = Question::new(current, suite.measured(), detail.thoroughness);
     // Presets are skipped: on some scenes the ancestors' algorithms would take minutes.
-    let found = candidates(&scene, &view, &current, &question.axes, &question.thoroughness);
+    let found = candidates(&scene, &view, &question);
     let mut studio = Studio::new(Shot::new(&scene, &view, &current, detail.size));
     let size = detail.size;
     let mut bench = Bench { clock, source: &mut studio, watch, question: &question, size };

@@ -54,6 +54,12 @@ impl Renderer {
         Ok(picture)
     }
 
+    /// Returns the number of windows in which a whole picture with 256 samples per pixel is drawn.
+    pub fn window_count(size: Size) -> usize {
+        let side = usize::try_from(WINDOW).expect("positive");
+        size.width.div_ceil(side) * size.height.div_ceil(side)
+    }
+
     /// Draws the windows of the picture, or of the band, that contain damaged tiles.
     pub(super) fn draw_supersampled(
         &mut self,

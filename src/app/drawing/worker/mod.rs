@@ -25,6 +25,7 @@ use std::time::{Duration, Instant};
 use self::elsewhere::Elsewhere;
 use super::border::Border;
 use super::dial::DialFigures;
+use super::painted::Painted;
 use super::snapshot::Snapshot;
 use super::viewport_renderer::{Asked, Drawn, Finer, ViewportRenderer};
 use marraztu_core::base::image::Picture;
@@ -103,6 +104,8 @@ struct Shared<P> {
     disturbed: AtomicBool,
     /// Whether the thread has to stop.
     over: AtomicBool,
+    /// The progress of the picture that is being drawn.
+    painted: Arc<Painted>,
     /// Whether a request waits outside of this instance; asked between tiles of a refinement.
     is_awaited: fn() -> bool,
 }
@@ -143,12 +146,10 @@ impl<P: Copy + Send + 'static> Worker<P> {
 
     /// Draws on this thread, when results are taken.
     fn here(wake: impl Fn() + 'static, is_awaited: fn() -> bool) -> Self {
-        let here = Here { painter: Painter::new(), wake: Box::new(wake) };
-        Self {
-            shared: Shared::new(is_awaited),
-            last: None,
-            place: Place::Here(Box::new(RefCell::new(here))),
-        }
+        let shared = Shared::new(is_awaited);
+        let painter = Painter::new(Arc::clone(&shared.painted));
+        let here = Here { painter, wake: Box::new(wake) };
+        Self { shared, last: None, place: Place::Here(Box::new(RefCell::new(here))) }
     }
 
     /// Lets another instance of the program draw, which the shell exchanges messages with.
@@ -198,6 +199,11 @@ impl<P: Copy + Send + 'static> Worker<P> {
     /// Returns how long the requested picture has been in progress, if it is not finished.
     pub(crate) fn drawing_for(&self) -> Option<Duration> {
         self.shared.lock().begun.map(|begun| begun.elapsed())
+    }
+
+    /// Returns the finished fraction of the requested picture, if it is known.
+    pub(crate) fn painted(&self) -> Option<f64> {
+        self.shared.painted.fraction()
     }
 
     pub(crate) const fn last(&self) -> Option<&Snapshot> {
@@ -302,6 +308,7 @@ impl<P> Shared<P> {
             newer: AtomicBool::new(false),
             disturbed: AtomicBool::new(false),
             over: AtomicBool::new(false),
+            painted: Arc::default(),
             is_awaited,
         })
     }
@@ -401,7 +408,7 @@ enum Due<P> {
 
 /// Draws pictures and answers requests until the desk is closed.
 fn work<P: Copy + Send>(shared: &Shared<P>, wake: &impl Fn()) {
-    let mut painter = Painter::new();
+    let mut painter = Painter::new(Arc::clone(&shared.painted));
     while let Some(due) = shared.next() {
         painter.work(shared, wake, due);
     }
@@ -433,8 +440,9 @@ struct Painter {
 }
 
 impl Painter {
-    fn new() -> Self {
-        Self { renderer: ViewportRenderer::new(Instant::now), last: None, outlined: Vec::new() }
+    fn new(painted: Arc<Painted>) -> Self {
+        let renderer = ViewportRenderer::new(Instant::now, painted);
+        Self { renderer, last: None, outlined: Vec::new() }
     }
 
     fn work<P: Copy + Send>(&mut self, shared: &Shared<P>, wake: &impl Fn(), due: Due<P>) {
@@ -465,7 +473,7 @@ impl Painter {
         let Some(wanted) = wanted else { return };
         if !self.draw(shared, wake, &wanted) {
             // A renderer that panicked may hold inconsistent buffers, so it is replaced.
-            self.renderer = ViewportRenderer::new(Instant::now);
+            self.renderer = ViewportRenderer::new(Instant::now, Arc::clone(&shared.painted));
             self.last = None;
             return;
         }

@@ -177,12 +177,12 @@ fn budget_ui(
             changed = Some((value > 0.0).then_some(value));
         }
         match (budget.found, report) {
-            (Some(Some(point)), Some(report)) => {
-                let point = &report.findings.points[point];
+            (Some(Some(place)), Some(report)) => {
+                let point = &report.findings.points[place];
                 let text = format!("{}, {} ms", point.name, brief(point.ms));
                 let button = egui::Button::new(text).truncate();
                 if ui.add(button).on_hover_text("Draws the picture with these settings").clicked() {
-                    requests.push(Request::Settings(point.settings));
+                    requests.push(Request::Settings(report.chosen(place)));
                 }
             }
             (Some(None), _) => {
@@ -214,7 +214,9 @@ fn compare_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
         with_ui(ui, state, requests);
     }
     if let (Some(judged), true) = (&state.lab.judged, now != Compare::Off) {
-        ui.label(RichText::new(format!("Error: {}", in_words(&judged.error))).small());
+        let samples = judged.settings.samples_in_words();
+        let text = format!("Error with {samples}: {}", in_words(&judged.error));
+        ui.label(RichText::new(text).small());
     }
 }
 

@@ -160,7 +160,7 @@ fn panel_ui(
         let ink = mark_color(ui.visuals(), mark);
         painter.hline(from..=to, at.y, Stroke::new(1.0, ink));
     }
-    let is_now = |mark: &PanelMark| report.findings.points[mark.point].settings == state.settings;
+    let is_now = |mark: &PanelMark| mark.chosen == state.settings;
     // The marks are one stop of Tab: the arrow keys move between them.
     let ids: Vec<Id> =
         panel.marks.iter().map(|mark| ui.scope_id().with(("mark", mark.point))).collect();
@@ -170,7 +170,7 @@ fn panel_ui(
         let sense = regions::sense(Sense::click(), i == stop);
         let response = ui.interact(rect, ids[i], sense);
         if mark_ui(ui, response, mark, is_now(mark), report).clicked() {
-            requests.push(Request::Settings(report.findings.points[mark.point].settings));
+            requests.push(Request::Settings(mark.chosen));
         }
     }
     names_ui(ui, panel, &at, transform.frame());

@@ -104,7 +104,7 @@ fn rows_ui(ui: &mut Ui, state: &State, report: &Report, requests: &mut Requests)
         let rows: Vec<&Row> = report.rows();
         let ids: Vec<Id> = (0..rows.len()).map(|i| ui.scope_id().with(("row", i))).collect();
         // The rows are one stop of Tab: the arrow keys move between them.
-        let is_now = |row: &&Row| report.findings.points[row.point].settings == state.settings;
+        let is_now = |row: &&Row| row.chosen == state.settings;
         let stop = regions::stop(ui, &ids, rows.iter().position(is_now), 1);
         for (i, row) in rows.into_iter().enumerate() {
             let heading = heading(row);
@@ -174,7 +174,7 @@ fn row_ui(
     requests: &mut Requests,
 ) {
     let (point, error) = (&report.findings.points[row.point], &row.error);
-    let now = point.settings == state.settings;
+    let now = row.chosen == state.settings;
     let size = vec2(ui.available_width(), theme::ROW - 3.0);
     let (rect, _) = ui.allocate_exact_size(size, Sense::hover());
     let response = ui.interact(rect, place.id, regions::sense(Sense::click(), place.is_stop));
@@ -210,7 +210,7 @@ fn row_ui(
         point.ratio.pairs, point.ratio.thrown, error.coverage
     );
     if response.on_hover_text(hint).clicked() {
-        requests.push(Request::Settings(point.settings));
+        requests.push(Request::Settings(row.chosen));
     }
 }
 
