@@ -491,7 +491,7 @@ class Scene:
         text += f"            eye: {real_vector(eye)},\n            axes: {axes},\n            lens: {lens},\n        ),\n    ],\n"
         text += "    lights: [\n" + "".join(self.lights) + "    ],\n"
         text += f"    view: (object: Some({selected}), camera: {camera}, subject: Camera, marks: false),\n"
-        text += "    settings: (samples: 4, filter: Trilinear),\n)\n"
+        text += "    settings: (samples: 4, filter: Anisotropic),\n)\n"
         (HERE / f"{self.folder}.marraztu").write_text(text, encoding="ascii", newline="\n")
 
 

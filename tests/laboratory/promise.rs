@@ -183,3 +183,28 @@ fn light_of_the_default_is_within_a_quarter_of_a_byte_step_before_it_is_rounded(
     let worst = off.fold(0.0_f64, f64::max);
     assert!(turned > 1000 && worst <= 0.25, "{worst} {turned}");
 }
+
+/// Catches: settings of an example that cost more than the default and show less.
+#[test]
+fn the_own_settings_of_an_example_are_as_near_to_the_ideal_as_the_default() {
+    for example in io::EXAMPLES {
+        let opened = io::open(example.path.as_ref(), &io::Progress::new()).unwrap();
+        let own = opened.settings;
+        // A distant view needs filters, a close one sharp texels.
+        for size in [Size::new(160, 100), Size::new(480, 300)] {
+            let shot = Shot::new(&opened.scene, &opened.view, &own, size);
+            let mut studio = Studio::new(shot);
+            let ideal = studio.rendering(&own.ideal());
+            for samples in [own.samples, Settings::REFINED] {
+                let mut rmse = |settings: Settings| {
+                    let settings = Settings { samples, ..settings };
+                    studio.rendering(&settings).error(&ideal).whole.rmse
+                };
+                let [own, default] = [own, Settings::default().modelled_as(&own)].map(&mut rmse);
+                let title = example.title;
+                eprintln!("{title}, {size:?}, {samples:?}: {own}, by default {default}");
+                assert!(own <= 1.02 * default, "{title}, {size:?}, {samples:?}: {own} > {default}");
+            }
+        }
+    }
+}
