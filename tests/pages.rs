@@ -5,6 +5,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -35,6 +36,13 @@ const PAGES: &[&str] = &[
     "fuzz/README.md",
     "python/README.md",
 ];
+
+/// Pages with measured figures.
+const EVIDENCE: &[&str] =
+    &["docs/accuracy.md", "docs/breakages.md", "docs/speed.md", "docs/stability.md"];
+
+/// The most commits between the figures of a release and the release.
+const STALE: usize = 150;
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
@@ -283,4 +291,107 @@ fn every_path_that_a_page_names_is_there() {
         }
     }
     assert!(found > 100, "only {found} paths were found");
+}
+
+/// The commits that a page names after a day, "2026-11-22, 757b107-dirty", with whether the tree
+/// had other changes.
+fn commits_of(text: &str) -> BTreeSet<(String, bool)> {
+    let is_day = |word: &str| {
+        let shape = |c: char| if c.is_ascii_digit() { '0' } else { c };
+        word.chars().map(shape).eq("0000-00-00".chars())
+    };
+    let words: Vec<&str> = text.split_whitespace().map(|word| word.trim_matches(',')).collect();
+    let commit = |pair: &[&str]| {
+        let name = pair[1].trim_end_matches('.');
+        let (hash, is_dirty) = name.strip_suffix("-dirty").map_or((name, false), |it| (it, true));
+        let is_hash = (7..=40).contains(&hash.len()) && hash.chars().all(|c| c.is_ascii_hexdigit());
+        (is_day(pair[0]) && is_hash).then(|| (hash.to_owned(), is_dirty))
+    };
+    words.windows(2).filter_map(commit).collect()
+}
+
+/// What is wrong with the commits of a page. `distance` counts the commits since one of them, if it
+/// is an ancestor.
+fn stale(
+    commits: &BTreeSet<(String, bool)>,
+    distance: &dyn Fn(&str) -> Option<usize>,
+    is_release: bool,
+) -> Vec<String> {
+    let fault = |(hash, is_dirty): &(String, bool)| match distance(hash) {
+        None => Some(format!("{hash} is not an ancestor of this commit")),
+        Some(count) if is_release && count > STALE => {
+            Some(format!("{hash} is {count} commits old: run tools/evidence"))
+        }
+        Some(_) if is_release && *is_dirty => {
+            Some(format!("{hash} had uncommitted changes: run tools/evidence"))
+        }
+        Some(_) => None,
+    };
+    commits.iter().filter_map(fault).collect()
+}
+
+/// The output of a git command in this repository; `None` if git fails.
+fn git(arguments: &[&str]) -> Option<String> {
+    let output = Command::new("git").arg("-C").arg(root()).args(arguments).output().ok()?;
+    let text = String::from_utf8(output.stdout).ok()?;
+    output.status.success().then(|| text.trim().to_owned())
+}
+
+/// Whether this is a release: `tools/release --check` says so, or the commit has the tag of a
+/// version.
+fn is_release() -> bool {
+    let is_version = |tag: &str| {
+        let digits = tag.strip_prefix('v').unwrap_or(tag);
+        digits.starts_with(|c: char| c.is_ascii_digit())
+    };
+    std::env::var_os("MARRAZTU_RELEASE").is_some()
+        || git(&["tag", "--points-at", "HEAD"]).is_some_and(|tags| tags.lines().any(is_version))
+}
+
+#[test]
+fn every_page_of_figures_names_the_commit_that_was_measured() {
+    for name in EVIDENCE {
+        assert!(!commits_of(&page(name)).is_empty(), "{name} names no commit after a day");
+    }
+}
+
+/// Archives and shallow clones have no history to look at, except that a release needs it.
+#[test]
+fn figures_come_from_ancestors_of_this_commit_and_those_of_a_release_are_fresh() {
+    // A copy of the sources within another repository is not of that repository's commit.
+    let is_own = root().join(".git").exists();
+    let shallow = git(&["rev-parse", "--is-shallow-repository"]).filter(|_| is_own);
+    if shallow.as_deref() != Some("false") {
+        assert!(std::env::var_os("MARRAZTU_RELEASE").is_none(), "a release needs its history");
+        eprintln!("LEFT OUT: the history of the project is not here, so figures may be stale");
+        return;
+    }
+    let distance = |hash: &str| {
+        git(&["merge-base", "--is-ancestor", hash, "HEAD"])?;
+        git(&["rev-list", "--count", &format!("{hash}..HEAD")])?.parse().ok()
+    };
+    let faults = PAGES.iter().filter(|name| name.starts_with("docs/")).flat_map(|name| {
+        let faults = stale(&commits_of(&page(name)), &distance, is_release());
+        faults.into_iter().map(move |fault| format!("{name}: {fault}"))
+    });
+    let faults: Vec<String> = faults.collect();
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+#[test]
+fn strange_old_and_dirty_commits_of_figures_are_found() {
+    let text = "- 2026-11-22, 757b107, rustc\n| 2026-11-29 625bcf0a-dirty | 2026-11-30 is a day, \
+                2026-11-30, facade0. and not 2026-11-1 abcdef1";
+    let commits = commits_of(text);
+    let names = [("625bcf0a", true), ("757b107", false), ("facade0", false)];
+    assert!(commits.iter().map(|(hash, is_dirty)| (hash.as_str(), *is_dirty)).eq(names));
+    let distance = |hash: &str| match hash {
+        "757b107" => Some(STALE + 1),
+        "625bcf0a" => Some(STALE),
+        _ => None,
+    };
+    assert_eq!(stale(&commits, &distance, false), ["facade0 is not an ancestor of this commit"]);
+    let faults = stale(&commits, &distance, true);
+    assert_eq!(faults.len(), 3, "{faults:?}");
+    assert!(faults[0].contains("uncommitted") && faults[1].contains("151 commits old"));
 }
