@@ -277,7 +277,7 @@ impl<'a> Source<'a> {
         };
         let world = |vector: DVec3| self.world_from_camera.transform_vector3(vector);
         Shape {
-            weights: QuickWeights::new(Weights::new(plan, draw, vertices, number, [0; 2])),
+            weights: QuickWeights::new(Weights::of_positions(plan, draw, vertices, number)),
             corners: [a, b - a, c - a],
             in_world: [self.world_from_camera.transform_point3(a), world(b - a), world(c - a)],
             normals,

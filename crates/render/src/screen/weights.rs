@@ -1,11 +1,11 @@
-//! Perspective-correct weights of single pixels in one triangle, in f64: for the alpha test and for
-//! clipped triangles.
+//! Weights of single pixels in one triangle, in f64: for the alpha test and for clipped triangles.
 
 use crate::accel::Accelerated as _;
 use fearless_simd::{Select as _, Simd, SimdBase as _, f64x8};
 use glam::DVec3;
 
 use super::clip::{Screen, ScreenVertex};
+use super::clipped_weights::ClippedWeights;
 use super::coverage::{Grid, SUBPIXELS, Snapped, Triangle};
 use super::spans::Row;
 use crate::frame::FramePlan;
@@ -13,12 +13,11 @@ use crate::frame::draw::Draw;
 use marraztu_core::accuracy::Interpolation;
 use marraztu_core::base::math::each;
 
-/// Perspective-correct weights of a triangle's corners at pixels, in f64, `shift` subpixels from
-/// pixel centres.
+/// The weights of a triangle's corners at pixels, in f64, `shift` subpixels from pixel centres.
 #[derive(Debug)]
 pub(crate) enum Weights {
-    /// Homogeneous coordinates, for a clipped triangle.
-    Cut(HomogeneousWeights),
+    /// A clipped triangle.
+    Cut(ClippedWeights),
     /// Spans of sixteen pixels, from the corners and their 1/w.
     Spans([Snapped; 3], [f64; 3], Grid),
     /// Edge functions, if the triangle has an area, and w of each corner (1 without perspective).
@@ -26,10 +25,31 @@ pub(crate) enum Weights {
 }
 
 impl Weights {
+    /// The weights by which attributes are interpolated in the frame.
     pub(crate) fn new(
         plan: &FramePlan,
         draw: &Draw,
         vertices: &[ScreenVertex],
+        number: u32,
+        shift: [i32; 2],
+    ) -> Self {
+        Self::by(plan.variants.interpolation, (plan, draw, vertices), number, shift)
+    }
+
+    /// The weights of positions on the surface, which have perspective whatever the interpolation,
+    /// at pixel centres.
+    pub(crate) fn of_positions(
+        plan: &FramePlan,
+        draw: &Draw,
+        vertices: &[ScreenVertex],
+        number: u32,
+    ) -> Self {
+        Self::by(Interpolation::Perspective, (plan, draw, vertices), number, [0; 2])
+    }
+
+    fn by(
+        interpolation: Interpolation,
+        (plan, draw, vertices): (&FramePlan, &Draw, &[ScreenVertex]),
         number: u32,
         shift: [i32; 2],
     ) -> Self {
@@ -40,12 +60,12 @@ impl Weights {
         let w = ids.map(|vertex| screen.clip(order.position(vertex))[3]);
         // Clipped triangles have corners without a screen position.
         if !own.iter().all(ScreenVertex::is_inside) {
-            return Self::Cut(HomogeneousWeights::new(plan, draw, number, shift));
+            return Self::Cut(ClippedWeights::by(interpolation, plan, draw, number, shift));
         }
         let grid = plan.variants.grid();
         // Moving all corners one way equals moving the sample the other way.
         let corners = own.map(|vertex| vertex.at().seen_from(grid.offset(shift)));
-        match plan.variants.interpolation {
+        match interpolation {
             Interpolation::EverySixteen => Self::Spans(corners, w.map(|w| 1.0 / w), grid),
             Interpolation::Affine => Self::Edges(Triangle::on(grid, corners), DVec3::ONE),
             Interpolation::Perspective => {
@@ -180,7 +200,7 @@ const FAR: f64 = 1e-3;
 
 /// Returns all three weights, which add up to 1, from the second and third.
 #[inline(always)]
-fn with_first([second, third]: [f64; 2]) -> DVec3 {
+pub(super) fn with_first([second, third]: [f64; 2]) -> DVec3 {
     DVec3::new(1.0 - second - third, second, third)
 }
 
@@ -263,7 +283,7 @@ impl HomogeneousWeights {
 
     /// Computes the weights at a pixel if it is in the triangle.
     #[inline(always)]
-    fn inside(&self, [x, y]: [i32; 2]) -> Option<DVec3> {
+    pub(super) fn inside(&self, [x, y]: [i32; 2]) -> Option<DVec3> {
         let (x, y) = (f64::from(x), f64::from(y));
         let parts = DVec3::from_array(each(self.planes, |[a, b, c]| a * x + (b * y + c)));
         (parts.min_element() > 0.0).then(|| parts / parts.element_sum())

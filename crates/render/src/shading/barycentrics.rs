@@ -115,7 +115,7 @@ pub(crate) fn interpolate_spans<T: AttributeNumber>(
     let mut span = None;
     for i in 0..fragments.len {
         let slot = fragments.slots[i].cast_unsigned() as usize;
-        // Clipped triangles have no rows on the screen.
+        // Clipped triangles have the spans of their pieces.
         if attributes.cut >> slot & 1 == 1 {
             continue;
         }

@@ -12,14 +12,11 @@ use super::texels::PlacedTexture;
 use super::triangle_attributes::TriangleAttributes;
 use crate::frame::color_path::FullPath;
 use crate::frame::draw::Shaded;
-use crate::screen::weights::HomogeneousWeights;
+use crate::screen::clipped_weights::ClippedWeights;
 use crate::simd::Number as _;
 
 /// Returns the weighting of a triangle's corners in this frame.
-fn by<'a>(
-    context: &'a ShadingContext<'_, f32>,
-    cut: Option<&'a HomogeneousWeights>,
-) -> Corners<'a> {
+fn by<'a>(context: &'a ShadingContext<'_, f32>, cut: Option<&'a ClippedWeights>) -> Corners<'a> {
     let interpolation = context.plan.variants.interpolation;
     Corners { cut, interpolation, thresholds: context.terms.thresholds() }
 }
@@ -85,10 +82,10 @@ impl Shader<f32> {
     }
 
     /// Returns the weights of the first triangle, if it is clipped.
-    fn cut_weights(&self, group: &Group<'_, f32>) -> Option<HomogeneousWeights> {
+    fn cut_weights(&self, group: &Group<'_, f32>) -> Option<ClippedWeights> {
         let TriangleAttributes { cut, numbers, .. } = &self.attributes;
         let is_cut = cut & 1 == 1;
-        is_cut.then(|| HomogeneousWeights::new(group.context.plan, group.draw, numbers[0], [0; 2]))
+        is_cut.then(|| ClippedWeights::new(group.context.plan, group.draw, numbers[0], [0; 2]))
     }
 
     /// Colours blocks if only the colours of the corners have to be interpolated.

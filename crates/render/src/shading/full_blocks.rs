@@ -15,10 +15,10 @@ use super::texels::{OfFirst, PlacedTexture, TexelScratch, product};
 use super::triangle_attributes::TriangleAttributes;
 use crate::lights::{Batch, LightTerm, load, set, store};
 use crate::plan::tile::TileLight;
+use crate::screen::clipped_weights::ClippedWeights;
 use crate::screen::coverage::Triangle;
 use crate::screen::perspective::{between, weighed};
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS};
-use crate::screen::weights::HomogeneousWeights;
 use crate::simd::gather::SLOTS;
 use crate::simd::{Encoding, Lanes as _, Sixteen, Vec3};
 use crate::texture::lanes::Stored;
@@ -264,7 +264,7 @@ impl<S: Simd, L: Linear<S>> Points<S> for Inside<S, L> {
 }
 
 /// The weights of a clipped triangle.
-impl<S: Simd> Points<S> for &HomogeneousWeights {
+impl<S: Simd> Points<S> for &ClippedWeights {
     #[inline(always)]
     fn block(&self, simd: S, [x, y]: [i32; 2]) -> [Weighted<S>; PAIRS] {
         [
@@ -277,7 +277,7 @@ impl<S: Simd> Points<S> for &HomogeneousWeights {
 }
 
 #[inline(always)]
-fn two_rows<S: Simd>(simd: S, of: &HomogeneousWeights, [x, y]: [i32; 2]) -> Weighted<S> {
+fn two_rows<S: Simd>(simd: S, of: &ClippedWeights, [x, y]: [i32; 2]) -> Weighted<S> {
     let ([b, c], w) = of.of_row(simd, [x, y]);
     let ([b_below, c_below], w_below) = of.of_row(simd, [x, y + 1]);
     ([b.narrow(b_below), c.narrow(c_below)], w.narrow(w_below))
@@ -288,7 +288,7 @@ fn two_rows<S: Simd>(simd: S, of: &HomogeneousWeights, [x, y]: [i32; 2]) -> Weig
 macro_rules! with_points {
     ($level:expr, $attributes:expr, $by:expr, $simd:ident, $points:ident => $what:expr) => {{
         let attributes: &TriangleAttributes<f32> = $attributes;
-        // Clipped: corners have no screen position, so weights come from clip space.
+        // Clipped: corners have no screen position, so weights are computed one row at a time.
         if let Some($points) = $by.cut {
             dispatch!($level, $simd => $what);
             true
@@ -320,7 +320,7 @@ macro_rules! with_points {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Corners<'a> {
     /// The weights, if the triangle is clipped.
-    pub(crate) cut: Option<&'a HomogeneousWeights>,
+    pub(crate) cut: Option<&'a ClippedWeights>,
     /// The interpolation, if it is not clipped.
     pub(crate) interpolation: Interpolation,
     /// The rounding thresholds of a block's pixels.

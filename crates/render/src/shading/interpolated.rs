@@ -20,8 +20,9 @@ use crate::frame::FramePlan;
 use crate::frame::draw::Draw;
 use crate::frame::variants::Decoding;
 use crate::lights::{Light, Rows, set};
+use crate::screen::clipped_weights::ClippedWeights;
 use crate::screen::coverage::Triangle;
-use crate::screen::weights::{HomogeneousWeights, barycentric, cut_place};
+use crate::screen::weights::{barycentric, cut_place};
 use crate::simd::gather::{SLOTS, paged, pick};
 use crate::simd::{Bits, Lanes as _, Sixteen, in_f64};
 use crate::texture::lanes::{Linear, Stored};
@@ -128,8 +129,7 @@ impl<T: ShadingNumber> Barycentrics<T> {
         }
     }
 
-    /// Computes the coordinates in clipped triangles, one pixel at a time, by homogeneous
-    /// coordinates.
+    /// Computes the coordinates in clipped triangles, one pixel at a time.
     #[cold]
     fn find_cut(
         &mut self,
@@ -140,8 +140,8 @@ impl<T: ShadingNumber> Barycentrics<T> {
     ) {
         for slot in Bits(attributes.cut & (u64::MAX >> (SLOTS - attributes.count))) {
             let number = attributes.numbers[slot];
-            // One set of planes per triangle serves all of its pixels.
-            let of = HomogeneousWeights::new(plan, draw, number, [0; 2]);
+            // One set-up per triangle serves all of its pixels.
+            let of = ClippedWeights::new(plan, draw, number, [0; 2]);
             for i in
                 (0..fragments.len).filter(|i| fragments.slots[*i].cast_unsigned() as usize == slot)
             {
@@ -149,8 +149,10 @@ impl<T: ShadingNumber> Barycentrics<T> {
                 self.weights[0][i] = T::from_f64(second);
                 self.weights[1][i] = T::from_f64(third);
                 self.w[i] = T::from_f64(w);
-                // These weights are clamped to the triangle, and light is evaluated at their point.
+                // Perspective-correct weights are clamped to the triangle, and light is evaluated at
+                // their point.
                 if fragments.shared {
+                    let ([second, third], _) = of.exact().at([fragments.x[i], fragments.y[i]]);
                     let weights = DVec3::new(1.0 - second - third, second, third);
                     let place = cut_place(plan, draw, number, weights);
                     for (row, place) in self.positions.iter_mut().zip(place) {

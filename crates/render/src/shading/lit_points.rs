@@ -15,7 +15,7 @@ use crate::screen::weights::Weights;
 use crate::shadow::rays::Origins;
 use crate::shadow::tracer::Tracer;
 use crate::shadow::triangle::Corners;
-use marraztu_core::accuracy::Terminator;
+use marraztu_core::accuracy::{Interpolation, Terminator};
 use marraztu_core::base::math::{each, normal_matrix, unit};
 use marraztu_core::scene::{Normals, dvec3};
 
@@ -29,6 +29,8 @@ pub(crate) fn place_fragments<T: ShadingNumber>(
     let ShadingContext { plan, frame, .. } = *group.context;
     origins.begin(Some(caster), true);
     let vertices = frame.corners_of(group.draw_index);
+    // Only weights with perspective are weights of positions.
+    let has_perspective = plan.variants.interpolation == Interpolation::Perspective;
     let is_smooth = plan.variants.terminator == Terminator::Smooth;
     let smooth = is_smooth && group.draw.normals == Normals::Vertex;
     let (mut last, mut known) = (usize::MAX, None);
@@ -46,15 +48,15 @@ pub(crate) fn place_fragments<T: ShadingNumber>(
                 let turn = if attributes.back >> slot & 1 == 1 { -1.0 } else { 1.0 };
                 each(normals_of(group.draw, tracer, caster, number), |normal| normal * turn)
             });
-            let weights = Weights::new(plan, group.draw, vertices, number, [0; 2]);
+            let weights = Weights::of_positions(plan, group.draw, vertices, number);
             known = Some((corners, normals, weights));
         }
         let Some((corners, normals, weights)) = &known else { continue };
         let at_centre = weights.at([fragments.x[i], fragments.y[i]]);
         // Lit at the centre of the pixel, unless the centre is outside of the triangle.
         let is_inside = at_centre.min_element() >= 0.0;
-        let weights =
-            if is_inside || !fragments.shared { at_centre } else { barycentrics.weights(i) };
+        let is_shared = fragments.shared && has_perspective;
+        let weights = if is_inside || !is_shared { at_centre } else { barycentrics.weights(i) };
         // The point is moved off the edges, and its own triangle never shades it.
         let [y, z] = shares(weights);
         let at = within(corners, [y, z]);

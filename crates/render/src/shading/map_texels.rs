@@ -9,7 +9,7 @@ use super::texels::{FarTexture, PlacedTexture, TexelScratch, TextureSamples, foo
 use super::triangle_attributes::{TriangleAttributes, asks_ahead};
 use crate::frame::variants::Decoding;
 use crate::lights::Rows;
-use crate::screen::weights::HomogeneousWeights;
+use crate::screen::clipped_weights::ClippedWeights;
 use crate::simd::gather::SLOTS;
 use crate::simd::{Bits, Number, Vec3};
 use crate::texture::lanes::Sampler;
@@ -220,7 +220,7 @@ pub(super) fn place<T: ShadingNumber>(
         if !fits_f32(&texels) {
             let Some(own) = FarTexture::new(slot, uvs, texture, || {
                 let number = attributes.numbers[slot];
-                HomogeneousWeights::new(plan, group.draw, number, [0; 2])
+                ClippedWeights::new(plan, group.draw, number, [0; 2])
             }) else {
                 placement.known &= !(1 << slot);
                 continue;

@@ -13,6 +13,7 @@ use crate::frame::FramePlan;
 use crate::frame::draw::Draw;
 use crate::frame::variants::Decoding;
 use crate::lights::{Rows, load, store};
+use crate::screen::clipped_weights::ClippedWeights;
 use crate::screen::coverage::doubled_area;
 use crate::screen::weights::HomogeneousWeights;
 use crate::simd::gather::SLOTS;
@@ -36,11 +37,11 @@ pub(crate) struct PlacedTexture<'a> {
 
 /// A texture on a triangle that spans more texels than f32 can tell apart: positions are computed
 /// in f64, and reduced to one repetition before rounding to f32.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct FarTexture {
     /// The slot of the triangle.
     pub(crate) slot: usize,
-    weights: HomogeneousWeights,
+    weights: ClippedWeights,
     placement: ExactPlacement,
 }
 
@@ -50,7 +51,7 @@ impl FarTexture {
         slot: usize,
         uvs: Uvs,
         texture: &Texture,
-        weights: impl FnOnce() -> HomogeneousWeights,
+        weights: impl FnOnce() -> ClippedWeights,
     ) -> Option<Self> {
         let placement = ExactPlacement::new(uvs, texture)?;
         Some(Self { slot, weights: weights(), placement })
