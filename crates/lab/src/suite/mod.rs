@@ -28,8 +28,15 @@ pub struct SuiteScene {
     pub what: &'static str,
     /// The keys of the axes that are measured on it.
     pub axes: &'static [&'static str],
+    /// The keys of the axes on it with choices that differ in time alone, each with the reason. On
+    /// all others, the error of a choice can be seen.
+    pub time_only: &'static [(&'static str, &'static str)],
     make: fn(u32) -> (Scene, View),
 }
+
+/// The arithmetic of light differs in time alone.
+const F32_LIGHT: (&str, &str) =
+    ("arithmetic", "light in 32 bits is off by a hundredth of a byte step at most");
 
 /// The scenes; together they cover every axis of accuracy.
 pub const SUITE: &[SuiteScene] = &[
@@ -37,66 +44,77 @@ pub const SUITE: &[SuiteScene] = &[
         word: "first",
         what: "the first scene of the editor",
         axes: &["samples", "resolution", "shading", "arithmetic"],
+        time_only: &[F32_LIGHT],
         make: |_| io::default_scene(),
     },
     SuiteScene {
         word: "pixels",
         what: "one lit triangle over the whole picture",
         axes: &["arithmetic", "rounding", "values"],
+        time_only: &[F32_LIGHT],
         make: scenes::pixels,
     },
     SuiteScene {
         word: "vertices",
-        what: "a million triangles, each about a pixel",
+        what: "a million triangles, each about a pixel, 10,000,000 units from the origin",
         axes: &["vertices", "subpixels"],
+        time_only: &[],
         make: scenes::vertices,
     },
     SuiteScene {
         word: "highlights",
         what: "balls with exponents from 5 to 500, one of them flattened",
         axes: &["shading", "power", "stretched", "specular"],
+        time_only: &[],
         make: scenes::highlights,
     },
     SuiteScene {
         word: "textures",
-        what: "a textured floor up to the horizon",
+        what: "a textured floor up to the horizon, seen in a roll",
         axes: &["filter", "interpolation"],
+        time_only: &[],
         make: scenes::textures,
     },
     SuiteScene {
         word: "edges",
         what: "a fence of thin slats",
         axes: &["samples", "coverage"],
+        time_only: &[],
         make: scenes::edges,
     },
     SuiteScene {
         word: "far",
-        what: "a ship 100,000 units from the origin",
+        what: "a ship 10,000,000 units from the origin",
         axes: &["vertices"],
+        time_only: &[],
         make: scenes::far,
     },
     SuiteScene {
         word: "depth",
         what: "pairs of surfaces 0.001 apart, from 2 to 2000 units away",
         axes: &["depth"],
+        time_only: &[],
         make: scenes::depth,
     },
     SuiteScene {
         word: "layers",
         what: "thirty-two glass balls, one inside another, each cut through by its neighbours",
         axes: &["transparency"],
+        time_only: &[],
         make: scenes::layers,
     },
     SuiteScene {
         word: "bumps",
         what: "balls with a height map, near and far",
         axes: &["bumps", "tangents"],
+        time_only: &[],
         make: scenes::bumps,
     },
     SuiteScene {
         word: "shadows",
         what: "balls on a floor under a sun, a bulb and a spot that cast shadows",
         axes: &["shadow-method", "terminator"],
+        time_only: &[],
         make: scenes::shadows,
     },
 ];

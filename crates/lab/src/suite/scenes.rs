@@ -131,7 +131,10 @@ pub(super) fn pixels(_: u32) -> (Scene, View) {
     stage(vec![placed], DVec3::new(0.0, 0.0, 220.0))
 }
 
-/// Builds a million triangles in a wavy grid.
+/// A place at which f32 has steps of a unit.
+const AWAY: DVec3 = DVec3::new(1e7, 3e6, -7e6);
+
+/// Builds a million triangles in a wavy grid, far from the origin.
 pub(super) fn vertices(detail: u32) -> (Scene, View) {
     let side = libm::sqrt(500.0 * f64::from(detail)) as u32;
     let mut maker = Maker::default();
@@ -149,8 +152,9 @@ pub(super) fn vertices(detail: u32) -> (Scene, View) {
             maker.polygon(&[at, at + 1, at + side + 2, at + side + 1]);
         }
     }
-    let placed = object(maker.model("waves"), shiny([0.3, 0.6, 0.8], 20.0), DMat4::IDENTITY);
-    stage(vec![placed], DVec3::new(0.0, 0.0, 400.0))
+    let placement = DMat4::from_translation(AWAY);
+    let placed = object(maker.model("waves"), shiny([0.3, 0.6, 0.8], 20.0), placement);
+    stage(vec![placed], AWAY + DVec3::new(0.0, 0.0, 400.0))
 }
 
 /// Builds balls with exponents from 5 to 500, coarse enough for vertex lighting to miss highlights;
@@ -168,14 +172,16 @@ pub(super) fn highlights(_: u32) -> (Scene, View) {
     stage(balls.collect(), DVec3::new(0.0, 0.0, 260.0))
 }
 
-/// Builds a floor with a texture of fine lines, from below the camera to the horizon.
+/// Builds a floor with a texture of fine lines, from below the camera to the horizon. It is rolled:
+/// along the rows of a level floor, distances are constant, and every interpolation is exact.
 pub(super) fn textures(_: u32) -> (Scene, View) {
     let mut maker = Maker::default();
     let (near, far) = (10.0, -1900.0);
     let corners = [[-900.0, near], [900.0, near], [900.0, far], [-900.0, far]];
     let corners = corners.map(|[x, z]| maker.vertex([x, -20.0, z], Some([x / 24.0, -z / 24.0])));
     maker.polygon(&corners);
-    let mut floor = object(maker.model("floor"), shiny([0.8; 3], 10.0), DMat4::IDENTITY);
+    let roll = DMat4::from_rotation_z(0.35);
+    let mut floor = object(maker.model("floor"), shiny([0.8; 3], 10.0), roll);
     let side = 64;
     let mut picture = Picture::filled(Size::new(side, side), [225, 220, 205, 255]);
     for (i, pixel) in picture.pixels_mut().iter_mut().enumerate() {
@@ -217,16 +223,15 @@ pub(super) fn edges(_: u32) -> (Scene, View) {
     stage(vec![fence], DVec3::new(0.0, 0.0, 300.0))
 }
 
-/// Places a ship of the first scene, with a camera next to it, 100,000 units from the origin.
+/// Places a ship of the first scene, with a camera next to it, far from the origin.
 pub(super) fn far(_: u32) -> (Scene, View) {
-    let away = DVec3::new(1e5, 3e4, -7e4);
     let (first, _) = default_scene();
     let ship = first.objects.first().and_then(|id| first.objects.get(id)).cloned();
     let ship = ship.map(|mut ship| {
-        ship.placement = Tracked::new(DMat4::from_translation(away));
+        ship.placement = Tracked::new(DMat4::from_translation(AWAY));
         ship
     });
-    stage(ship.into_iter().collect(), away + DVec3::new(0.0, 15.0, 120.0))
+    stage(ship.into_iter().collect(), AWAY + DVec3::new(0.0, 15.0, 120.0))
 }
 
 /// Builds pairs of plates 0.001 apart, the nearer one smaller, from 2 to 2000 units away.
