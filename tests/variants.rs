@@ -8,8 +8,9 @@ use common::{at, ball, covered, draw, edit, model_of, scene, square};
 use glam::{DMat4, DVec3};
 use marraztu_core::accuracy::Shot;
 use marraztu_core::accuracy::{
-    ACCURACY_PRESETS, AXES, Arithmetic, Axis, Coverage, DepthFormat, Filter, Interpolation,
-    NormalMatrix, Points, Rounding, Settings, SpecularPower, Subpixels, VertexArithmetic,
+    ACCURACY_PRESETS, AXES, AccuracyPreset, Arithmetic, Axis, Coverage, DepthFormat, Filter,
+    Interpolation, NormalMatrix, Points, Rounding, Settings, SpecularPower, Subpixels,
+    VertexArithmetic,
 };
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
@@ -438,4 +439,30 @@ fn presets_of_history_show_their_faults_and_list_them() {
         let holes = usual.iter().zip(&seen).filter(|(usual, seen)| **usual && !**seen).count();
         assert_eq!(holes > 1000, settings.coverage == Coverage::Points, "{}", preset.word);
     }
+}
+
+/// A floor and walls along the direction of view, which ancestor A's lattice of points misses. The
+/// preset lists this as a fault.
+#[test]
+fn points_leave_out_surfaces_along_the_direction_of_view_and_the_preset_says_so() {
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let floor = DMat4::from_translation(DVec3::new(0.0, -40.0, 0.0))
+        * DMat4::from_rotation_x(-quarter)
+        * DMat4::from_scale(DVec3::splat(300.0));
+    // The floor, a wall on the left, and the same in a roll of 30 degrees.
+    for roll in [0.0, -quarter, 0.5] {
+        let (mut scene, view) = scene(&[(square(), DMat4::from_rotation_z(roll) * floor)]);
+        edit(&mut scene, FIRST, |object| object.sides = Sides::Two);
+        let view = unmarked(view);
+        let seen = |coverage| {
+            let settings = Settings { coverage, ..Settings::default() };
+            let seen = covered(&draw(&scene, &view, &settings, 200), &scene);
+            seen.iter().filter(|seen| **seen).count()
+        };
+        let [exact, points] = [seen(Coverage::Exact), seen(Coverage::Points)];
+        assert!(exact > 5000 && points * 20 < exact, "{points} of {exact} at {roll}");
+    }
+    let says_so = |fault: &&str| fault.contains("along the direction of view");
+    let lists = |word| AccuracyPreset::named(word).unwrap().faults.iter().any(says_so);
+    assert!(lists("ancestor-a") && !lists("ancestor-b"));
 }

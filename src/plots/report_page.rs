@@ -113,12 +113,16 @@ fn table(report: &Report) -> String {
         let point = &report.findings.points[row.point];
         let (whole, flip) = (&row.error.whole, row.error.flip);
         let time = match point.verdict {
+            _ if row.error.is_incomplete() => {
+                format!("lacks surfaces</td><td>{}", brief(point.ms))
+            }
             Verdict::Busy => "too busy to tell".to_owned(),
             Verdict::Faster | Verdict::Slower | Verdict::Alike => {
                 format!("{:.2}x</td><td>{}", point.ratio.quartiles.median, brief(point.ms))
             }
         };
-        let columns = if point.verdict == Verdict::Busy { 2 } else { 1 };
+        let is_busy = point.verdict == Verdict::Busy && !row.error.is_incomplete();
+        let columns = if is_busy { 2 } else { 1 };
         let _ = writeln!(
             text,
             "<tr><td>{}</td><td colspan=\"{columns}\">{time}</td><td>{}</td><td>{}</td><td>{}%</td>\

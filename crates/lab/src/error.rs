@@ -8,6 +8,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::flip::Perceived;
+use super::lost::lost;
 use marraztu_core::base::image::Picture;
 
 /// A picture with the primitive at each pixel.
@@ -16,6 +17,8 @@ pub struct Rendering {
     picture: Picture,
     /// The primitive at each pixel.
     primitives: Vec<u32>,
+    /// The object at each pixel, 0 for the background.
+    objects: Vec<u32>,
     /// Whether pixels may show several primitives.
     mixed: bool,
     seen: Perceived,
@@ -33,7 +36,13 @@ pub struct Error {
     pub coverage: usize,
     /// The perceived difference over all pixels, from 0 to 1.
     pub flip: f64,
+    /// The part of the reference's surfaces that the picture lacks, from 0 to 1.
+    #[serde(default)]
+    pub lost: f64,
 }
+
+/// The smallest part of the surfaces that makes a picture incomplete.
+const INCOMPLETE: f64 = 0.05;
 
 /// Statistics of the byte differences of two pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -70,6 +79,12 @@ impl Region {
 }
 
 impl Error {
+    /// Returns whether the picture lacks surfaces that its reference shows. Its time is then no
+    /// gain.
+    pub fn is_incomplete(&self) -> bool {
+        self.lost >= INCOMPLETE
+    }
+
     /// Returns the figures over a region.
     pub const fn over(&self, region: Region) -> &Figures {
         match region {
@@ -135,7 +150,16 @@ impl Rendering {
     pub fn new(picture: Picture, primitives: Vec<u32>) -> Self {
         assert_eq!(picture.pixels().len(), primitives.len(), "every pixel shows something");
         let seen = Perceived::new(&picture);
-        Self { picture, primitives, mixed: false, seen }
+        let objects = primitives.iter().map(|primitive| u32::from(*primitive != 0)).collect();
+        Self { picture, primitives, objects, mixed: false, seen }
+    }
+
+    /// Adds the object at each pixel, 0 for the background; without it, all primitives are one
+    /// object.
+    #[must_use]
+    pub fn of_objects(self, objects: Vec<u32>) -> Self {
+        assert_eq!(objects.len(), self.primitives.len(), "every pixel shows something");
+        Self { objects, ..self }
     }
 
     /// Marks that each pixel has several samples, and may show several primitives.
@@ -167,6 +191,7 @@ impl Rendering {
             inside: inside.figures(),
             coverage: whole.pixels - inside.pixels,
             flip: self.seen.difference(&reference.seen),
+            lost: lost(&self.objects, &reference.objects, self.picture.size().width),
         }
     }
 
@@ -275,7 +300,7 @@ mod tests {
         let reference = rendering(PIXELS, [1, 0, 2, 2]);
         let error = reference.error(&reference);
         let none = Figures { largest: 0, rmse: 0.0, psnr: None, differing: 0.0 };
-        assert_eq!(error, Error { whole: none, inside: none, coverage: 0, flip: 0.0 });
+        assert_eq!(error, Error { whole: none, inside: none, coverage: 0, flip: 0.0, lost: 0.0 });
         assert_eq!(reference.change(&reference), none);
     }
 

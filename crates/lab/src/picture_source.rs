@@ -67,6 +67,10 @@ pub trait PictureSource {
     fn picture(&self) -> &Picture;
     /// Returns the primitive at each pixel of the last picture.
     fn primitives(&mut self) -> Vec<u32>;
+    /// Returns the object at each pixel of the last picture, 0 for the background.
+    fn objects(&mut self) -> Vec<u32> {
+        self.primitives().into_iter().map(|primitive| u32::from(primitive != 0)).collect()
+    }
 
     /// Draws the picture for these settings, to be judged.
     fn rendering(&mut self, settings: &Settings) -> Rendering {
@@ -77,7 +81,8 @@ pub trait PictureSource {
     /// Returns the last picture, which has these settings, to be judged.
     fn last_rendering(&mut self, settings: &Settings) -> Rendering {
         let primitives = self.primitives();
-        let rendering = Rendering::new(self.picture().clone(), primitives);
+        let objects = self.objects();
+        let rendering = Rendering::new(self.picture().clone(), primitives).of_objects(objects);
         if settings.samples == Samples::One { rendering } else { rendering.mixed() }
     }
 }
@@ -140,6 +145,13 @@ impl PictureSource for Studio {
             return vec![0; self.picture().pixels().len()];
         }
         self.renderer.primitives()
+    }
+
+    fn objects(&mut self) -> Vec<u32> {
+        if self.progress.is_cancelled() {
+            return vec![0; self.picture().pixels().len()];
+        }
+        self.renderer.objects()
     }
 }
 

@@ -79,6 +79,7 @@ pub const ACCURACY_PRESETS: &[AccuracyPreset] = &[
         ]),
         faults: &[
             "holes in surfaces nearer than 97 units",
+            "surfaces along the direction of view, such as a floor under a level camera, vanish",
             "17 writes per pixel at a distance of 400, 100 at 966",
             "highlights smaller than a polygon dim or vanish",
             "normals lean with stretched objects",

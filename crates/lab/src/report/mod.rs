@@ -12,7 +12,7 @@ pub use self::panels::{Panel, PanelMark, Panels, Scale};
 pub use self::table::{brief, csv, heading, left_out_in_words, markdown, quoted, tabs, text};
 pub use self::verdict::capitalized;
 use super::candidates::Group;
-use super::error::{Measure, Region};
+use super::error::{Error, Measure, Region};
 use super::front::{Point, fastest_within, front, most_exact_within};
 use super::sweep::{Findings, Measured, Row, Verdict};
 use marraztu_core::accuracy::Settings;
@@ -72,10 +72,13 @@ impl Report {
         self.findings.points.iter().map(|p| Point { time: p.ms, error: error(p) }).collect()
     }
 
-    /// Returns the points that share the common reference, with their indices.
+    /// Returns the points that share the common reference, with their indices. Pictures that lack
+    /// surfaces are left out, except the default's: their times are no gain.
     fn comparable(&self) -> (Vec<usize>, Vec<Point>) {
         let all = self.points().into_iter().enumerate();
-        all.filter(|(i, _)| self.findings.points[*i].ideal.is_some()).unzip()
+        let is_whole = |i: usize, error: Error| i == 0 || !error.is_incomplete();
+        all.filter(|(i, _)| self.findings.points[*i].ideal.is_some_and(|error| is_whole(*i, error)))
+            .unzip()
     }
 
     /// Returns the front for a minimum cut of the error. A point within the noise gets the time of

@@ -84,7 +84,11 @@ pub fn text(report: &Report) -> String {
         let marks = [
             if row.point == 0 { '*' } else { ' ' },
             if report.is_current(row) { '>' } else { ' ' },
-            if front.contains(&row.point) { '+' } else { ' ' },
+            match row.error.is_incomplete() {
+                true => '!',
+                false if front.contains(&row.point) => '+',
+                false => ' ',
+            },
         ];
         let marks: String = marks.iter().collect();
         let name = format!("{marks} {}", row.name);
@@ -93,6 +97,7 @@ pub fn text(report: &Report) -> String {
     let _ = writeln!(
         text,
         "\n* the default  > now  + nothing is both faster and more exact against the ideal.\n\
+         ! lacks surfaces that the reference shows: its time is no gain.\n\
          Errors are over {}. Rows of an axis: against the default with this axis\n\
          alone at its most exact. All others: against the ideal, 256 samples per pixel, each lit.",
         match report.region {
@@ -132,6 +137,11 @@ fn head(report: &Report) -> String {
     text
 }
 
+/// Returns the verdict on a row's time: none on a picture that lacks surfaces.
+fn verdict_word(row: &Row, point: &Measured) -> &'static str {
+    if row.error.is_incomplete() { "lacking" } else { point.verdict.word() }
+}
+
 fn figures(report: &Report, row: &Row) -> String {
     let point = &report.findings.points[row.point];
     let (ratio, error) = (&point.ratio, &row.error);
@@ -144,7 +154,7 @@ fn figures(report: &Report, row: &Row) -> String {
         format!("{:.3} - {:.3}", quartiles.lower, quartiles.upper),
         brief(point.ms),
         ratio.pairs,
-        point.verdict.word(),
+        verdict_word(row, point),
         figures.largest,
         brief(figures.rmse),
         psnr,
@@ -223,6 +233,11 @@ pub fn markdown(report: &Report, axis: &Axis) -> String {
         let star = if row.point == 0 { " (default)" } else { "" };
         let time = match (row.point, point.verdict) {
             (0, _) => "1x".to_owned(),
+            _ if error.is_incomplete() => format!(
+                "{:.2}x, but {}% of the surfaces are lost",
+                quartiles.median,
+                brief(error.lost * 100.0)
+            ),
             (_, Verdict::Busy) => "too busy to tell".to_owned(),
             (_, Verdict::Alike) => format!("{:.2}x (noise)", quartiles.median),
             _ => format!("{:.2}x", quartiles.median),
@@ -276,7 +291,7 @@ type Column = (&'static str, fn(&Cells<'_>) -> String);
 
 /// The columns of figures. Errors refer to the row's own reference, which the column `against`
 /// names.
-const FIGURES: [Column; 23] = [
+const FIGURES: [Column; 24] = [
     ("ms", |it| it.point.ms.to_string()),
     ("ratio", |it| it.point.ratio.quartiles.median.to_string()),
     ("ratio_lower", |it| it.point.ratio.quartiles.lower.to_string()),
@@ -285,7 +300,7 @@ const FIGURES: [Column; 23] = [
     ("noise_upper", |it| it.noise[1].to_string()),
     ("pairs", |it| it.point.ratio.pairs.to_string()),
     ("thrown_away", |it| it.point.ratio.thrown.to_string()),
-    ("verdict", |it| it.point.verdict.word().to_owned()),
+    ("verdict", |it| verdict_word(it.row, it.point).to_owned()),
     ("against", |it| it.row.against.word().to_owned()),
     ("largest", |it| it.row.error.whole.largest.to_string()),
     ("rmse", |it| it.row.error.whole.rmse.to_string()),
@@ -293,6 +308,7 @@ const FIGURES: [Column; 23] = [
     ("differing", |it| it.row.error.whole.differing.to_string()),
     ("coverage", |it| it.row.error.coverage.to_string()),
     ("flip", |it| it.row.error.flip.to_string()),
+    ("lost", |it| it.row.error.lost.to_string()),
     ("inside_largest", |it| it.row.error.inside.largest.to_string()),
     ("inside_rmse", |it| it.row.error.inside.rmse.to_string()),
     ("inside_differing", |it| it.row.error.inside.differing.to_string()),

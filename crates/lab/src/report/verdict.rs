@@ -42,6 +42,8 @@ enum Kind {
     Free,
     /// No faster, but less exact.
     Worse,
+    /// Lacks surfaces, whatever its time.
+    Lacks,
 }
 
 impl Report {
@@ -51,7 +53,8 @@ impl Report {
         let against = if has_ideal { Against::Ideal } else { Against::Axis };
         let said = said(self, against);
         let mut sentences = told(&said);
-        let is_faster = |it: &Said<'_>| it.point.verdict == Verdict::Faster;
+        let is_faster =
+            |it: &Said<'_>| it.point.verdict == Verdict::Faster && it.kind != Kind::Lacks;
         let nothing = if said.iter().any(is_faster) { "nothing else" } else { "nothing" };
         let noise = noise(self, self.findings.rows.iter().map(|row| row.point));
         sentences.push(match (self.findings.complete, noise) {
@@ -117,6 +120,12 @@ impl Report {
             });
         }
         let point = &points[row.point];
+        if row.error.is_incomplete() {
+            let part = digits(row.error.lost * 100.0);
+            return Some(format!(
+                "{name}: {part}% of the surfaces are lost, error {error} of 255."
+            ));
+        }
         let default = axis.in_words(axis.chosen(&points[0].settings));
         let time = match point.verdict {
             Verdict::Alike => "the same time as".to_owned(),
@@ -219,6 +228,7 @@ fn told(said: &[Said<'_>]) -> Vec<String> {
         .map(|it| format!("{} ({})", it.name(), digits(it.error)))
         .collect();
     sentences.extend(listed("less exact and no faster here, with the error in brackets", &worse));
+    sentences.extend(of(Kind::Lacks).into_iter().map(lacking));
     sentences
 }
 
@@ -238,7 +248,11 @@ fn said(report: &Report, against: Against) -> Vec<Said<'_>> {
             };
             let (error, before) = (rmse(row), default_row.map_or(0.0, rmse));
             let is_finer = finer(axis.chosen(&point.settings).word) > default;
-            let Some(kind) = kind(point, [error, before], is_finer) else { continue };
+            let kind = match row.error.is_incomplete() {
+                true => Some(Kind::Lacks),
+                false => kind(point, [error, before], is_finer),
+            };
+            let Some(kind) = kind else { continue };
             said.push(Said { axis, row, point, error, before, kind });
         }
     }
@@ -349,6 +363,12 @@ fn free(it: &Said<'_>) -> String {
 
 fn saved(it: &Said<'_>) -> String {
     format!("{} {} {}% and {}.", it.name(), it.verb("save"), less(it), it.effect("raise"))
+}
+
+/// Writes about a choice that leaves out surfaces, with a time that says nothing.
+fn lacking(it: &Said<'_>) -> String {
+    let (loses, part) = (it.verb("lose"), digits(it.row.error.lost * 100.0));
+    format!("{} {loses} {part}% of the surfaces here: no time is saved by that.", it.name())
 }
 
 /// Returns the saved part of the time, in per cent.

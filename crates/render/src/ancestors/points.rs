@@ -4,6 +4,10 @@
 //! a distance of 400, with 800 pixels for 45 degrees, a pixel is written 17 times; at 966, a
 //! hundred times. Nearer than 97, points are farther apart than pixels and leave holes.
 //!
+//! The lattice of points lies across the direction of view. A surface along that direction, such as
+//! a floor under a level camera or a wall beside it, therefore lies between two rows or two columns
+//! and vanishes, however large it is on the screen. Floors that are almost level become stripes.
+//!
 //! Beyond the distance at which a pixel gets [`MOST`] points along a side, the step grows with the
 //! distance. A kept the step constant and took minutes.
 

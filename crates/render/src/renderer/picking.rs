@@ -223,6 +223,26 @@ impl Renderer {
         self.spread(pixels)
     }
 
+    /// Returns the object or camera shown by each pixel, row by row from the top: 0 for the
+    /// background, else a number that is unique to each item of the scene.
+    #[must_use]
+    pub fn objects(&mut self) -> Vec<u32> {
+        let mut pixels = vec![0; self.seen_size().area()];
+        let mut last = (None, 0);
+        self.look(|renderer, plan, at, word, _| {
+            // Neighbouring pixels mostly show the same primitive.
+            let primitive = Some(primitive(word));
+            if last.0 != primitive {
+                let item =
+                    renderer.seen(plan, word).map(|(draw, _)| plan.draws[draw as usize].item);
+                last = (primitive, item.map_or(0, number_of));
+            }
+            pixels[at] = last.1;
+            ControlFlow::Continue(())
+        });
+        self.spread(pixels)
+    }
+
     /// Gives each pixel of the finished picture what its drawn pixel has.
     fn spread<T: Copy>(&self, drawn: Vec<T>) -> Vec<T> {
         let Some((plan, size)) = self.plan.as_ref().and_then(|plan| Some((plan, plan.enlarged?)))
@@ -283,5 +303,14 @@ impl Renderer {
             }
             Visible::Line(line) => self.frame.line_seen(plan, line),
         }
+    }
+}
+
+/// Returns a number from 1 that no other item has: items of all three lists share their ids.
+const fn number_of(item: ItemId) -> u32 {
+    match item {
+        ItemId::Object(id) => id.0.saturating_add(1),
+        ItemId::Camera(id) => id.0.saturating_add(1),
+        ItemId::Light(id) => id.0.saturating_add(1),
     }
 }

@@ -200,6 +200,7 @@ fn row_ui(
     }
     focus_ring(ui, rect, &response);
     let verdict = match point.verdict {
+        _ if error.is_incomplete() => "surfaces of the reference are missing",
         Verdict::Faster => "faster than the default",
         Verdict::Slower => "slower than the default",
         Verdict::Alike => "no difference in time beyond the noise",
