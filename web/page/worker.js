@@ -67,6 +67,8 @@ let canLook = false;
 function isRevoked() {
   const request = new XMLHttpRequest();
   request.open("GET", token, false);
+  // Firefox parses an answer without a type as XML, and logs an error.
+  request.responseType = "arraybuffer";
   try {
     request.send();
     return request.status !== 200;
