@@ -318,18 +318,10 @@ pub extern "C" fn picture() -> *const u8 {
 pub extern "C" fn rgba(x: usize, y: usize, width: usize, height: usize) -> *const u8 {
     with(|page| {
         let Page { shell: Some(shell), rgba, .. } = page else { return std::ptr::null() };
-        rgba.clear();
-        for row in y..y + height {
-            let begin = row * shell.size()[0] + x;
-            let Some(pixels) = shell.pixels().get(begin..begin + width) else {
-                return std::ptr::null();
-            };
-            rgba.extend(pixels.iter().flat_map(|pixel| {
-                let [blue, green, red, _] = pixel.to_le_bytes();
-                [red, green, blue, 255]
-            }));
+        match shell.copy_rgba([x, y], [width, height], rgba) {
+            true => rgba.as_ptr(),
+            false => std::ptr::null(),
         }
-        rgba.as_ptr()
     })
 }
 

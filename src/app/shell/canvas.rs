@@ -228,6 +228,25 @@ impl CanvasShell {
         &self.pixels
     }
 
+    /// Copies red, green, blue and opacity of the pixels of an area, row by row. `at` is its left
+    /// upper pixel. Returns whether all of it is within the canvas; if not, nothing is copied.
+    pub fn copy_rgba(&self, at: [usize; 2], size: [usize; 2], into: &mut Vec<u8>) -> bool {
+        let ends = [0, 1].map(|axis| at[axis].saturating_add(size[axis]));
+        if ends[0] > self.size[0] || ends[1] > self.size[1] {
+            return false;
+        }
+        into.clear();
+        for row in at[1]..ends[1] {
+            let begin = row * self.size[0];
+            let pixels = &self.pixels[begin + at[0]..begin + ends[0]];
+            into.extend(pixels.iter().flat_map(|pixel| {
+                let [blue, green, red, _] = pixel.to_le_bytes();
+                [red, green, blue, 255]
+            }));
+        }
+        true
+    }
+
     /// Returns the number of columns and rows.
     pub const fn size(&self) -> [usize; 2] {
         self.size
