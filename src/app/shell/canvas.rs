@@ -14,8 +14,10 @@ use egui::{Context, Event, FullOutput, PlatformOutput, RawInput, Rect, Vec2};
 use egui::{ViewportId, ViewportInfo, pos2, vec2};
 use rayon::ThreadPoolBuildError;
 
+use super::LONGEST_SIDE;
 use crate::app::editor::App;
 use crate::app::editor::jobs::JobKind;
+use crate::app::state::Notice;
 use crate::app::tasks::do_waiting;
 use marraztu_io::{OwnFolders, Preferences};
 use marraztu_painter::{Canvas, WindowFrame, WindowPainter};
@@ -266,6 +268,7 @@ impl CanvasShell {
         let mut input = self.input.take();
         input.time = Some(time);
         input.viewport_id = ViewportId::ROOT;
+        input.max_texture_side = Some(LONGEST_SIDE);
         let points = self.extent() / (self.scale * self.zoom());
         input.screen_rect = Some(Rect::from_min_size(pos2(0.0, 0.0), points));
         let native_pixels_per_point = Some(self.scale);

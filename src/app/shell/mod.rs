@@ -14,3 +14,6 @@ pub use canvas::{CanvasShell, Painted};
 pub use desktop::{Shell, StartError};
 #[cfg(feature = "desktop")]
 pub(crate) use desktop::{find_display, run};
+
+/// The longest side of a texture where the CPU paints: windows and pictures are smaller.
+const LONGEST_SIDE: usize = 1 << 14;

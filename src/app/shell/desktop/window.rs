@@ -15,6 +15,7 @@ use winit::raw_window_handle::{HasDisplayHandle, RawDisplayHandle};
 use super::surface::Surface;
 use super::{Make, StartError, display_error};
 use crate::app::editor::App;
+use crate::app::shell::LONGEST_SIDE;
 use marraztu_painter::WindowFrame;
 
 /// The minimum interval between frames.
@@ -26,8 +27,6 @@ const UNSEEN: Duration = Duration::from_millis(100);
 const PATIENCE: Duration = Duration::from_millis(250);
 /// The time for which information of the display about the window is reused without an event.
 const BELIEVED: Duration = Duration::from_secs(1);
-/// The longest side of a texture; windows and pictures are smaller.
-const LONGEST_SIDE: usize = 1 << 14;
 
 /// An event that wakes the loop, other than events of the window.
 #[derive(Debug)]
