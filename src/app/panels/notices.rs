@@ -224,7 +224,7 @@ fn settle(ui: &Ui, at: usize, focused: bool, requests: &mut Requests) {
     if rest <= 0.0 && !requests.iter().any(moves) {
         requests.push(Request::Settle(at));
     } else if !held {
-        ui.ctx().request_repaint_after(Duration::from_secs_f64(rest));
+        ui.ctx().request_repaint_after(Duration::from_secs_f64(rest.max(0.0)));
     }
 }
 
