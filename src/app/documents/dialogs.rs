@@ -17,7 +17,7 @@ use super::browser::{Browser, Choice, Look, Mode};
 use super::folders::{Folders, Kind};
 use super::material_dialog::MaterialDialog;
 use super::picture_dialog::{PictureChoices, PictureDialog};
-use super::questions::{self, close_ui};
+use super::questions::{self, close_ui, limit_width};
 use super::wanted::{After, Wanted};
 use crate::app::input::keyboard::Keyboard;
 use crate::app::tasks::{Outcome, Task};
@@ -345,14 +345,14 @@ impl Dialog {
             Self::Material(dialog) => dialog.ui(ui),
             Self::Picture(dialog) => dialog.ui(ui),
             Self::Fault(title, sentence) => {
-                ui.set_max_width(420.0);
+                limit_width(ui, 420.0);
                 heading(ui, *title);
                 ui.label(sentence.as_str());
                 ui.add_space(4.0);
                 close_ui(ui)
             }
             Self::Details(title, lines) => {
-                ui.set_max_width(560.0);
+                limit_width(ui, 560.0);
                 heading(ui, title.as_str());
                 egui::ScrollArea::vertical().max_height(300.0).show(ui, |ui| {
                     for line in lines {

@@ -13,8 +13,11 @@ use crate::app::widgets::text::file_name;
 
 const WIDTH: f32 = 440.0;
 
+/// The narrowest margin beside the contents of a dialog.
+const MARGIN: f32 = 28.0;
+
 pub(super) fn unsaved_ui(ui: &mut Ui, after: &After) -> Option<End> {
-    ui.set_max_width(WIDTH);
+    limit_width(ui, WIDTH);
     heading(ui, "Save the scene?");
     ui.label(match after {
         After::Quit => "Unsaved changes are lost unless you save them.",
@@ -44,7 +47,7 @@ pub(super) fn unsaved_ui(ui: &mut Ui, after: &After) -> Option<End> {
 
 /// Asks what to do with a scene after another program has changed its file.
 pub(super) fn changed_ui(ui: &mut Ui, path: &Path, after: Option<&After>) -> Option<End> {
-    ui.set_max_width(WIDTH);
+    limit_width(ui, WIDTH);
     heading(ui, format!("{} has changed", file_name(path)));
     ui.label(
         "Another program or window has changed this file since it was opened here. Saving \
@@ -78,7 +81,7 @@ pub(super) fn replace_ui(
     path: &Path,
     answer: &mut Option<Box<Answer>>,
 ) -> Option<End> {
-    ui.set_max_width(WIDTH);
+    limit_width(ui, WIDTH);
     heading(ui, format!("Replace {}?", file_name(path)));
     let folder = path.parent().unwrap_or(path).display();
     ui.label(format!("A file with this name already exists in {folder}."));
@@ -99,7 +102,7 @@ pub(super) fn replace_ui(
 
 /// Lists the missing files of the scene.
 pub(super) fn missing_ui(ui: &mut Ui, files: &[PathBuf]) -> Option<End> {
-    ui.set_max_width(560.0);
+    limit_width(ui, 560.0);
     heading(ui, "Missing files");
     ui.label("After you find one, others in the same folder are suggested.");
     ui.add_space(4.0);
@@ -122,7 +125,7 @@ pub(super) fn missing_ui(ui: &mut Ui, files: &[PathBuf]) -> Option<End> {
 
 /// Lists the discarded work.
 pub(super) fn discarded_ui(ui: &mut Ui, all: &[String]) -> Option<End> {
-    ui.set_max_width(WIDTH);
+    limit_width(ui, WIDTH);
     heading(ui, "Discarded work");
     ui.label(
         "Discarded work is kept for 30 days. Click an entry to open it in place of this \
@@ -139,6 +142,12 @@ pub(super) fn discarded_ui(ui: &mut Ui, all: &[String]) -> Option<End> {
     });
     ui.add_space(4.0);
     close_ui(ui).or(answer)
+}
+
+/// Limits the width of a dialog, which has margins in a narrow window.
+pub(super) fn limit_width(ui: &mut Ui, most: f32) {
+    let room = ui.ctx().content_rect().width() - 2.0 * MARGIN;
+    ui.set_max_width(most.min(room.max(120.0)));
 }
 
 /// Shows the button that closes a dialog without a question.
