@@ -138,11 +138,15 @@ const MODIFIERS = { Alt: 1, Control: 2, Shift: 8 };
 
 export class Tab {
   constructor(browser, target, session) {
-    Object.assign(this, { browser, target, session, faults: [] });
+    // `leaves` answers when the browser asks whether to leave a page; `asked` counts that.
+    Object.assign(this, { browser, target, session, faults: [], leaves: true, asked: 0 });
     browser.listeners.add((method, params, from) => {
       if (from === session && method === "Runtime.exceptionThrown") {
         const { text, exception } = params.exceptionDetails;
         this.faults.push(exception?.description ?? text);
+      } else if (from === session && method === "Page.javascriptDialogOpening") {
+        this.asked += 1;
+        this.send("Page.handleJavaScriptDialog", { accept: this.leaves });
       }
     });
   }

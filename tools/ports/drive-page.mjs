@@ -82,6 +82,22 @@ class Page {
     return this.until(`something ${colors.join(" and ")} is shown`, () => this.find(colors));
   }
 
+  // Returns how far the background of the first scene reaches to the right and down, in CSS pixels.
+  reach() {
+    return this.tab.run(() => {
+      const canvas = document.getElementById("canvas");
+      const copy = new OffscreenCanvas(canvas.width, canvas.height).getContext("2d");
+      copy.drawImage(canvas, 0, 0);
+      const pixels = new Uint32Array(copy.getImageData(0, 0, canvas.width, canvas.height).data.buffer);
+      let [right, down] = [0, 0];
+      for (let at = pixels.indexOf(0xffb30000); at >= 0; at = pixels.indexOf(0xffb30000, at + 1)) {
+        right = Math.max(right, (at % canvas.width) + 1);
+        down = Math.floor(at / canvas.width) + 1;
+      }
+      return [right, down].map((count) => count / window.devicePixelRatio);
+    });
+  }
+
   // Returns a number for the pixels of the canvas, or of an area of it.
   pixels(area) {
     return this.tab.run(async (area) => {
@@ -163,6 +179,8 @@ v 2 -1 0\nv 4 -1 0\nv 4 1 0\nv 2 1 0\nvn 0 0 1\nusemtl glow\nf 1//1 2//1 3//1 4/
   await writeFile(join(at, "both.marraztu"), `(version: 1, cameras: [(id: 3, name: "camera", eye: (0.0, 0.0, 9.0))], objects: [
     (id: 1, name: "square", model: File(path: "../models/square.obj"), material: File),
     (id: 2, name: "green", model: File(path: "parts/green.obj"), material: File)])`);
+  await writeFile(join(at, "broken.obj"), "<!doctype html>\n<title>Sign in</title>\n");
+  await writeFile(join(at, "broken.marraztu"), "(version: 1, objects: [");
 }
 
 // A large red square and a small blue one in front of it, with equal names of all files.
@@ -225,6 +243,49 @@ const checks = {
     await page.sees("red");
   },
 
+  async "the picture fills a phone with three pixels per point, and a 4K screen"(visit) {
+    const page = await visit();
+    for (const [width, height, scale] of [[390, 844, 3], [844, 390, 3], [3840, 2160, 1]]) {
+      await page.tab.resize(width, height, scale);
+      await page.open(`${site}view.html`);
+      await page.until(`the picture fills ${width}x${height} at ${scale}`, async () => {
+        const [right, down] = await page.reach();
+        return right === width && down === height;
+      }, 60);
+      await page.open(site);
+      // The status line is below it.
+      await page.until(`the picture reaches the lower end of ${height}`, async () => (await page.reach())[1] > height - 40, 60);
+    }
+  },
+
+  async "the browser asks before unsaved work is left, and not after it was saved"(visit) {
+    const page = await visit();
+    await page.open(site);
+    await page.sees("red");
+    await page.tab.press("c");
+    await page.changes("a step", () => page.tab.press("x"));
+    page.tab.leaves = false;
+    page.tab.send("Page.reload").catch(() => {});
+    await page.until("the browser asks", () => page.tab.asked > 0);
+    equal(x(await page.scene(), "r_falke"), -90, "the object in the page that was not left");
+    page.tab.leaves = true;
+    await page.tab.reload();
+    await page.started();
+    equal(page.tab.asked, 1, "questions");
+  },
+
+  async "a second tab says that its unsaved work is not kept, also if it opens a model"(visit, visitor) {
+    const first = await visit();
+    await first.open(site);
+    await first.sees("red");
+    for (const search of ["", "?model=/models/square.obj"]) {
+      const second = await visit(visitor);
+      await second.open(site + search);
+      await second.hears("Marraztu is open in another tab");
+    }
+    equal((await first.said()).includes("another tab"), false, "the first tab says so, too");
+  },
+
   async "unsaved work is offered after a reload and after a crash"(visit, visitor) {
     let page = await visit();
     await page.open(site);
@@ -254,8 +315,9 @@ const checks = {
     await page.open(`${site}?model=/models/square.obj`);
     await page.hears("Opened square");
     await page.sees("red", "blue");
-    await page.tab.open(`${site}?model=/models/none.obj`);
-    await page.until("the reason why a model is not shown", async () => (await page.status()).includes("404"));
+    await page.open(`${site}?model=/models/none.obj`);
+    await page.hears("models/none.obj: the server answers 404");
+    await page.sees("red");
   },
 
   async "a link opens a scene with the files of all its models"(visit) {
@@ -434,6 +496,29 @@ const checks = {
     await page.hears("Opened square");
   },
 
+  async "the viewer says in a sentence why there is no picture, and shows nothing else"(visit) {
+    const page = await visit(undefined, 300, 200);
+    const reasons = {
+      "model=/models/none.obj": "none.obj: the server answers 404",
+      "model=/scenes/broken.obj": "scenes/broken.obj: this is not an OBJ file",
+      "model=/scenes/broken.marraztu": "scenes/broken.marraztu",
+      "model=http://localhost:1/square.obj": "the server does not answer",
+      "model=/models/square.obj&view=sideways": "write degrees to the right and up",
+    };
+    for (const [search, reason] of Object.entries(reasons)) {
+      await page.tab.open(`${site}view.html?${search}`);
+      await page.until(`the page says "${reason}"`, async () => (await page.status()).includes(reason));
+      await keep(`viewer-${search}`, page);
+      const [picture, isWhole] = await page.tab.run(() => {
+        const status = document.getElementById("status");
+        return [getComputedStyle(canvas).display, status.scrollHeight <= status.clientHeight];
+      });
+      equal(picture, "none", `the picture of ${search}`);
+      equal(isWhole, true, `all of the sentence is shown: ${await page.status()}`);
+      equal((await page.tab.shown(4, 4)).join(), "27,27,27", "the colour of the page");
+    }
+  },
+
   async "the viewer works in a page of another origin"(visit) {
     const page = await visit(undefined, 600, 400);
     await page.tab.open(other.address);
@@ -447,6 +532,14 @@ const checks = {
 };
 
 const browser = await Browser.start();
+
+// Writes a picture of a page, if pictures are kept.
+async function keep(name, page) {
+  if (process.env.KEEP) {
+    const file = `${name.replaceAll(/\W+/g, "-").slice(0, 40)}.png`;
+    await writeFile(join(process.env.KEEP, file), await page.tab.picture());
+  }
+}
 
 // Does a check in a profile of its own. Returns the reason why it failed, if it did.
 async function reason(name, check) {
@@ -464,10 +557,7 @@ async function reason(name, check) {
   } catch (error) {
     return error.message;
   } finally {
-    if (process.env.KEEP) {
-      const file = `${name.replaceAll(/\W+/g, "-").slice(0, 40)}.png`;
-      await pages.at(-1).tab.picture().then((bytes) => writeFile(join(process.env.KEEP, file), bytes));
-    }
+    await keep(name, pages.at(-1));
     await browser.send("Target.disposeBrowserContext", { browserContextId: visitor });
   }
 }

@@ -4,9 +4,12 @@ const FILES = "/files";
 const EXAMPLE = "example:/";
 
 async function bytes(place) {
-  const response = await fetch(place);
+  // Without an answer, browsers do not say why.
+  const response = await fetch(place).catch(() => {
+    throw new Error(`${place}: the server does not answer, or does not allow this page to read its files`);
+  });
   if (!response.ok) {
-    throw new Error(`${place}: ${response.status} ${response.statusText}`);
+    throw new Error(`${place}: the server answers ${response.status} ${response.statusText}`.trim());
   }
   return new Uint8Array(await response.arrayBuffer());
 }

@@ -22,6 +22,9 @@ export class Files {
     // The files that workers need, by path, and what is called with each one that is new or has changed.
     this.shared = new Map();
     this.changed = () => {};
+    // Called with a sentence for the user.
+    this.tell = () => {};
+    this.hasFailed = false;
   }
 
   // The root folder, for WASI. Without /own, the editor keeps nothing.
@@ -37,8 +40,34 @@ export class Files {
     this.known.set(path, file.data);
     this.share(`/files/${path}`, bytes);
     // Without room the editor works; recovered work then lacks this file.
-    this.database?.transaction(USER, "readwrite").objectStore(USER).put(bytes, path);
+    this.store(USER)?.put(bytes, path);
     return `/files/${path}`;
+  }
+
+  // Returns whether unsaved work is kept for the next visit.
+  keeps() {
+    return this.database !== null;
+  }
+
+  // Returns a store of the database to write to, if there is one.
+  store(name) {
+    try {
+      const transaction = this.database?.transaction(name, "readwrite");
+      transaction?.addEventListener("abort", () => this.fail(transaction.error));
+      return transaction?.objectStore(name);
+    } catch (error) {
+      // The user may have deleted the data of the page.
+      this.fail(error);
+      return undefined;
+    }
+  }
+
+  fail(error) {
+    console.warn("A file is not kept:", error);
+    if (!this.hasFailed) {
+      this.hasFailed = true;
+      this.tell("The browser does not keep unsaved work for the next visit: save the scene before you leave the page");
+    }
   }
 
   // Returns the first of the folders "", "2/", "3/" ... where none of these files, names and bytes, replaces
@@ -130,8 +159,8 @@ export class Files {
       const isWork = ([path]) => path.startsWith("state/");
       if (!(await isOnlyTab())) {
         // Another tab keeps its work; this one gets the preferences alone, and keeps nothing.
-        console.warn("Another tab is open: preferences and unsaved work of this one are not kept.");
         this.database = null;
+        this.tell("Marraztu is open in another tab, so unsaved work of this tab is not kept for the next visit");
       }
       for (const [path, bytes] of all.filter((file) => this.database || !isWork(file))) {
         put(this.own, path, bytes);
@@ -142,13 +171,15 @@ export class Files {
     } catch (error) {
       // A private window may have no database; the editor works without.
       console.warn("Preferences and unsaved work are not kept:", error);
+      this.database = null;
+      this.tell("This browser keeps no files, so unsaved work is not kept for the next visit");
     }
     this.kept = new Map(this.list());
   }
 
   // Reads the user's files if there is work that needs them, or else forgets them.
   async restoreUser(isNeeded) {
-    const store = this.database.transaction(USER, "readwrite").objectStore(USER);
+    const store = this.store(USER);
     if (!isNeeded) {
       await answer(store.clear());
       return;
@@ -182,9 +213,9 @@ export class Files {
       return;
     }
     this.kept = new Map(list);
-    const store = this.database.transaction(STORE, "readwrite").objectStore(STORE);
+    const store = this.store(STORE);
     // The files are copied: the editor goes on writing.
-    store.put(Object.fromEntries(list.map(([path, bytes]) => [path, bytes.slice()])), STORE);
+    store?.put(Object.fromEntries(list.map(([path, bytes]) => [path, bytes.slice()])), STORE);
   }
 }
 

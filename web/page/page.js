@@ -50,12 +50,40 @@ function missing(path) {
 
 const fetching = new Fetching(files, missing);
 
-// Reports what stops the editor. The next visit offers the unsaved work.
+// Reports what stops the editor or the viewer.
 function fail(error) {
-  editor = null;
   console.error(error);
-  status.textContent = `Marraztu has stopped: ${error}\nReload the page to go on; unsaved work is offered again.`;
+  if (isView) {
+    showInstead(`The viewer has stopped: ${error.message ?? error}. Reload the page to try again.`);
+    return;
+  }
+  editor = null;
+  const work = files.keeps() ? "; unsaved work is offered again" : "";
+  status.textContent = `Marraztu has stopped: ${error}\nReload the page to go on${work}.`;
 }
+
+// Shows a sentence in place of the picture.
+function showInstead(sentence) {
+  editor = null;
+  canvas.hidden = true;
+  status.textContent = sentence;
+}
+
+// Sentences for the user that wait for the editor.
+const waiting = [];
+
+// Says something in a notice of the editor.
+function tell(sentence) {
+  if (!editor) {
+    waiting.push(sentence);
+    return;
+  }
+  write(sentence);
+  editor.tell();
+  schedule();
+}
+
+files.tell = tell;
 
 // Frames.
 
@@ -86,7 +114,23 @@ function run(time) {
   }
 }
 
+// Whether work would be lost with the page.
+let isUnsaved = false;
+
+window.addEventListener("beforeunload", (event) => {
+  if (editor && isUnsaved) {
+    // The browser asks whether to leave.
+    event.preventDefault();
+    event.returnValue = true;
+  }
+});
+
 function obey(frame) {
+  if (frame.fault) {
+    showInstead(`The picture cannot be shown: ${frame.fault.replaceAll("/files/", "")}`);
+    return;
+  }
+  isUnsaved = frame.unsaved;
   for (const [x, y, width, height] of frame.changed) {
     const address = editor.rgba(x, y, width, height);
     if (address) {
@@ -176,10 +220,6 @@ const touches = new Touches(hear);
 
 canvas.addEventListener("pointerdown", (event) => {
   event.preventDefault();
-  if (editor) {
-    // What was said about the start has been read.
-    status.textContent = "";
-  }
   if (!isView) {
     text.focus({ preventScroll: true });
   }
@@ -342,7 +382,7 @@ async function copyPicture(width, height) {
   sheet.getContext("2d").putImageData(new ImageData(bytes, width, height), 0, 0);
   const blob = sheet.convertToBlob({ type: "image/png" });
   await navigator.clipboard?.write([new ClipboardItem({ "image/png": blob })]).catch((error) => {
-    status.textContent = `The picture was not copied: ${error.message}`;
+    tell(`The picture was not copied: ${error.message}`);
   });
 }
 
@@ -366,7 +406,7 @@ async function add(list) {
       contents.push([name, new Uint8Array(await file.arrayBuffer())]);
     } catch (error) {
       // The file may be gone, or not readable.
-      status.textContent = `${name}: ${error.message}`;
+      tell(`${name} cannot be read: ${error.message}`);
     }
   }
   // Objects keep their files: others of the same names go to a folder.
@@ -486,13 +526,11 @@ function watchScale() {
 }
 
 // Leaves the keyboard to the page around the picture.
-function showPictureOnly(query, model) {
+function showPictureOnly(query) {
   write(query.get("view") ?? "");
   if (editor.show_picture_only() !== 0) {
-    status.textContent = `view=${query.get("view")}: write degrees to the right and up, as 30,20, or front, right, back, left, top, bottom, iso`;
+    showInstead(`view=${query.get("view")}: write degrees to the right and up, as 30,20, or front, right, back, left, top, bottom, iso`);
   }
-  const link = document.getElementById("open");
-  link.search = model ? new URLSearchParams({ model }) : "";
 }
 
 async function begin() {
@@ -519,16 +557,23 @@ async function begin() {
     return;
   }
   const model = query.get("model");
-  let unloaded = "";
+  if (isView && model) {
+    document.getElementById("open").search = new URLSearchParams({ model });
+  }
   let path = "";
   if (model) {
     status.textContent = `Loading ${model} ...`;
-    // The editor starts without the model, and says why.
-    path = await fetching.model(model).catch((error) => {
+    try {
+      path = await fetching.model(model);
+    } catch (error) {
       console.error(error);
-      unloaded = String(error);
-      return "";
-    });
+      if (isView) {
+        showInstead(`The picture cannot be shown: ${error.message}`);
+        return;
+      }
+      // The editor starts without the model, and says why.
+      tell(`The file was not opened: ${error.message}`);
+    }
   }
   size = measure();
   [canvas.width, canvas.height] = size;
@@ -545,12 +590,13 @@ async function begin() {
     jobs = [0, 1, 2].map((kind) => new Jobs(source, module, kind, schedule));
   }
   editor = module;
-  status.textContent = unloaded;
+  status.textContent = "";
   if (isView) {
-    showPictureOnly(query, model);
+    showPictureOnly(query);
   } else {
     text.focus({ preventScroll: true });
   }
+  waiting.splice(0).forEach(tell);
   new ResizeObserver(fit).observe(canvas);
   watchScale();
   run(performance.now());

@@ -35,6 +35,11 @@ pub(crate) struct Frame {
     opening: Vec<PathBuf>,
     /// The last message and everything reported over the picture, for screen readers.
     said: String,
+    /// Whether work would be lost with the page, because it was not saved.
+    unsaved: bool,
+    /// Why the viewer shows no picture, in a sentence.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fault: Option<String>,
     /// The milliseconds until the next frame is due, if it is not only due after an event.
     #[serde(skip_serializing_if = "Option::is_none")]
     due: Option<f64>,
@@ -43,7 +48,7 @@ pub(crate) struct Frame {
 impl Frame {
     /// Also returns a picture for the clipboard.
     pub(crate) fn new(shell: &CanvasShell, painted: Painted) -> (Self, Option<ColorImage>) {
-        let Painted { changed, output, wants, opening, said } = painted;
+        let Painted { changed, output, wants, opening, said, unsaved, fault } = painted;
         let changed = changed
             .into_iter()
             .map(|area| [area.left, area.top, area.width(), area.height()])
@@ -66,8 +71,20 @@ impl Frame {
         let due = shell.due().map(|due| due.as_secs_f64() * 1000.0);
         let cursor = css(output.cursor_icon);
         let picture = image.as_ref().map(|image| image.size);
-        let frame =
-            Self { changed, cursor, copied, picture, link, edited, wants, opening, said, due };
+        let frame = Self {
+            changed,
+            cursor,
+            copied,
+            picture,
+            link,
+            edited,
+            wants,
+            opening,
+            said,
+            unsaved,
+            fault,
+            due,
+        };
         (frame, image)
     }
 }

@@ -259,6 +259,17 @@ pub extern "C" fn hear() -> u32 {
     })
 }
 
+/// Shows the sentence in the input in a notice.
+#[unsafe(no_mangle)]
+pub extern "C" fn tell() {
+    with(|page| {
+        let sentence = String::from_utf8_lossy(&page.input).into_owned();
+        if let Some(shell) = &mut page.shell {
+            shell.tell(sentence);
+        }
+    });
+}
+
 /// Opens the files whose paths are in the input, as if they were dropped on the editor.
 #[unsafe(no_mangle)]
 pub extern "C" fn drop_files() {

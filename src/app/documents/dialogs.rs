@@ -102,6 +102,14 @@ impl Dialogs {
         self.show(Dialog::Fault("Something went wrong", sentence));
     }
 
+    /// Returns the sentence of the first error that is shown.
+    pub(crate) fn fault(&self) -> Option<&str> {
+        self.open.iter().find_map(|dialog| match dialog {
+            Dialog::Fault(_, sentence) => Some(&**sentence),
+            _ => None,
+        })
+    }
+
     /// Asks whether to save unsaved changes.
     pub(crate) fn ask_unsaved(&mut self, after: After) {
         if !self.open.iter().any(|dialog| matches!(dialog, Dialog::Unsaved(_))) {

@@ -240,8 +240,9 @@ impl App {
             notices::show((&ctx, place), state, loading, &self.making.tasks, &mut requests);
             pixel::show(&ctx, state, place, &mut requests);
         }
-        // The dialogs come last, over everything else.
-        let answer = self.dialogs.ui(&ctx);
+        // The dialogs come last, over everything else. A page that shows only the picture reports
+        // errors itself.
+        let answer = if self.state.picture_only { None } else { self.dialogs.ui(&ctx) };
         let pressed = Keyboard::take(&ctx);
 
         // Requests are answered last, so everything in a frame shows the same scene.
@@ -447,7 +448,7 @@ impl App {
     }
 
     /// Returns whether the user's scene is saved, even while the scene of a lesson is shown.
-    fn is_all_saved(&self) -> bool {
+    pub(crate) fn is_all_saved(&self) -> bool {
         let own = self.waiting_scene.as_deref().unwrap_or(&self.state);
         own.history.is_saved()
     }

@@ -41,6 +41,8 @@ pub struct CanvasShell {
     due: Arc<AtomicU64>,
     /// Takes the files that the host was asked for.
     answer: Option<Sender<Option<Vec<PathBuf>>>>,
+    /// Sentences of the host that wait for a notice.
+    told: Vec<String>,
 }
 
 impl std::fmt::Debug for CanvasShell {
@@ -65,6 +67,10 @@ pub struct Painted {
     pub opening: Vec<PathBuf>,
     /// The last message and everything reported over the picture, for screen readers.
     pub said: String,
+    /// Whether work would be lost with the canvas, because it was not saved.
+    pub unsaved: bool,
+    /// If only the picture is shown: why there is none, in a sentence. The host shows it.
+    pub fault: Option<String>,
 }
 
 impl CanvasShell {
@@ -110,6 +116,7 @@ impl CanvasShell {
             is_new: true,
             due,
             answer: None,
+            told: Vec::new(),
         })
     }
 
@@ -199,6 +206,12 @@ impl CanvasShell {
         self.due.store(0, Ordering::Relaxed);
     }
 
+    /// Shows a sentence of the host in a notice.
+    pub fn tell(&mut self, sentence: String) {
+        self.told.push(sentence);
+        self.due.store(0, Ordering::Relaxed);
+    }
+
     /// Drops files on the editor.
     pub fn drop_files(&mut self, files: Vec<PathBuf>) {
         self.app.open_files(&self.ctx, files);
@@ -265,6 +278,10 @@ impl CanvasShell {
         self.due.store(u64::MAX, Ordering::Relaxed);
         // The last frame has shown that this work begins.
         do_waiting();
+        // A scene that is being opened replaces the notices, too.
+        if self.app.loading.is_empty() {
+            self.app.state.notices.extend(self.told.drain(..).map(Notice::new));
+        }
         let mut input = self.input.take();
         input.time = Some(time);
         input.viewport_id = ViewportId::ROOT;
@@ -303,7 +320,15 @@ impl CanvasShell {
             wants: self.file_request(),
             opening: std::mem::take(&mut self.app.opening),
             said: self.app.state().said(),
+            unsaved: !self.app.is_all_saved(),
+            fault: self.fault(),
         }
+    }
+
+    /// Returns why nothing is shown, if only the picture is.
+    fn fault(&self) -> Option<String> {
+        let fault = self.app.dialogs.fault().filter(|_| self.app.state.picture_only);
+        fault.map(str::to_owned)
     }
 
     /// Passes a request to open files to the host. A file to be saved needs no question: the host
