@@ -74,7 +74,7 @@ fn report(has_wall: bool) -> Report {
     let time = Duration::from_secs(9);
     let thoroughness = Thoroughness { word: "test", limits, combinations: 0, time, presets: true };
     let axes = vec![Axis::named("coverage").unwrap()];
-    let question = Question { current, axes, thoroughness };
+    let question = Question::new(current, axes, thoroughness);
     let mut studio = Studio::new(Shot::new(&scene, &view, &current, Size::new(64, 48)));
     let (mut clock, watch) = (QuickPoints::default(), Watch::default());
     Report {

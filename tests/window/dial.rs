@@ -3,6 +3,8 @@
 //! Catches: figures of another view that look current, a preset that a key or a click does not
 //! choose, a window that measures forever, a loupe that stays after its key is released.
 
+use std::time::Duration;
+
 use egui::accesskit::Role;
 use egui::{Key, Modifiers};
 use egui_kittest::kittest::{By, NodeT as _, Queryable as _};
@@ -86,6 +88,25 @@ fn a_preset_is_chosen_by_its_row_and_by_its_key() {
     }
     editor.perform(Action::ToggleDial);
     assert!(texts_of_rows(&editor).is_empty());
+}
+
+#[test]
+fn a_slow_picture_shows_its_progress_and_is_cancelled_by_a_click() {
+    let mut editor = Editor::of_size(1000.0, 640.0);
+    editor.settle();
+    // Asking and settling would wait for the picture.
+    let ctx = editor.harness.ctx.clone();
+    editor.harness.state_mut().answer(&ctx, Request::Settings(preset("ideal")));
+    let mut steps = 0..100;
+    while !editor.shows("Drawing Ideal: ") {
+        assert!(steps.next().is_some(), "the progress is not shown");
+        std::thread::sleep(Duration::from_millis(100));
+        editor.harness.step();
+    }
+    control(&editor, Role::Button, "Cancel").click();
+    editor.settle();
+    assert_eq!(editor.state().settings, preset("default"));
+    assert!(!editor.shows("Drawing Ideal: "));
 }
 
 #[test]

@@ -356,6 +356,23 @@ mod tests {
     }
 
     #[test]
+    fn the_pictures_of_the_dial_are_measured_first_and_say_their_samples() {
+        let (scene, view) = marraztu_io::default_scene();
+        let current = Settings::default();
+        let question = Question::new(current, all_axes(), Thoroughness::QUICK);
+        let found = candidates(&scene, &view, &question);
+        let (default, others) = found.all.split_first().unwrap();
+        assert_eq!((default.name.as_str(), default.settings), ("Default, 1 sample", current));
+        let dial = crate::dial::of_dial(&current, Some(Settings::REFINED));
+        let names =
+            ["Draft, 1/4 sample", "Default, 16 samples", "Exact, 16 samples", "Ideal, 256 samples"];
+        for (((preset, settings), name), it) in dial.zip(names).zip(others) {
+            assert_eq!((it.name.as_str(), it.settings), (name, settings));
+            assert_eq!((it.group, it.chosen), (Group::Preset, preset.of(&current)));
+        }
+    }
+
+    #[test]
     fn ways_of_history_are_choices_of_the_table() {
         for (key, word) in HISTORICAL {
             assert!(Axis::named(key).and_then(|axis| axis.choice(word)).is_some(), "{key} {word}");

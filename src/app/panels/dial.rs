@@ -22,10 +22,10 @@ use marraztu_core::accuracy::{ACCURACY_PRESETS, AccuracyPreset, Settings};
 use marraztu_lab::dial::{Figures, error_in_words, in_words, is_steady};
 use marraztu_lab::estimate::Estimate;
 
-const WIDTH: f32 = 268.0;
+const WIDTH: f32 = 284.0;
 
 /// The right ends of the columns of samples, time and error.
-const COLUMNS: [f32; 3] = [116.0, 182.0, WIDTH - 6.0];
+const COLUMNS: [f32; 3] = [134.0, 200.0, WIDTH - 6.0];
 
 /// The dial is hidden over a smaller picture.
 const LEAST: egui::Vec2 = vec2(330.0, 100.0);
