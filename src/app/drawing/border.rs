@@ -56,6 +56,21 @@ impl Border {
     }
 }
 
+/// Returns whether these pixels fill most of a picture: more than half of it, or from side to side
+/// and to a third side.
+pub(crate) fn fills_most(size: Size, own: &[bool]) -> bool {
+    let rows = || own.chunks_exact(size.width.max(1));
+    let is_in = |row: Option<&[bool]>| row.is_some_and(|row| row.contains(&true));
+    let sides = [
+        is_in(rows().next()),
+        is_in(rows().next_back()),
+        rows().any(|row| row.first() == Some(&true)),
+        rows().any(|row| row.last() == Some(&true)),
+    ];
+    let count = own.iter().filter(|own| **own).count();
+    2 * count > own.len() || sides.iter().filter(|side| **side).count() >= 3
+}
+
 /// Returns the columns from the first to the last marked pixel of a row.
 fn marked(row: &[bool]) -> Option<Range<usize>> {
     let first = row.iter().position(|own| *own)?;
@@ -68,5 +83,33 @@ fn put(runs: &mut Vec<Run>, x: usize, y: usize) {
     match runs.last_mut() {
         Some(run) if run.y == y && run.x + run.length == x => run.length += 1,
         _ => runs.push(Run { x, y, length: 1 }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Marks the pixels of a part of a picture of 10 x 8.
+    fn part(columns: Range<usize>, rows: Range<usize>) -> Vec<bool> {
+        let pixel = |i: usize| columns.contains(&(i % 10)) && rows.contains(&(i / 10));
+        (0..80).map(pixel).collect()
+    }
+
+    #[test]
+    fn walls_and_floors_fill_most_of_a_picture_and_objects_in_it_do_not() {
+        let size = Size::new(10, 8);
+        let cases = [
+            ("a wall", part(0..10, 0..8), true),
+            ("a floor", part(0..10, 6..8), true),
+            ("a near object", part(1..9, 1..8), true),
+            ("an object", part(2..6, 1..7), false),
+            ("an object at a side", part(0..4, 2..8), false),
+            ("a pole", part(4..5, 0..8), false),
+            ("nothing", part(0..0, 0..0), false),
+        ];
+        for (what, own, expected) in cases {
+            assert_eq!(fills_most(size, &own), expected, "{what}");
+        }
     }
 }

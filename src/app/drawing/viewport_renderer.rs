@@ -10,7 +10,7 @@ use egui::ColorImage;
 use serde::{Deserialize, Serialize};
 
 use super::adaptive_quality::{AdaptiveQuality, Attempt};
-use super::border::Border;
+use super::border::{Border, fills_most};
 use super::dial::{DialFigures, IdleDial};
 use super::images::present;
 use super::painted::Painted;
@@ -259,10 +259,22 @@ impl ViewportRenderer {
     /// Finds one border around the visible parts of several items, filed under the id of one of
     /// them.
     pub(crate) fn border(&mut self, item: ItemId, all: &[ItemId]) -> Option<Border> {
+        let (size, own) = self.mask(all)?;
+        Some(Border::of(item, size, &own))
+    }
+
+    /// Finds the border around an item under the pointer; `None` if it fills most of the picture,
+    /// as walls and floors do.
+    pub(crate) fn border_under_pointer(&mut self, item: ItemId) -> Option<Border> {
+        let (size, own) = self.mask(&[item])?;
+        (!fills_most(size, &own)).then(|| Border::of(item, size, &own))
+    }
+
+    /// Marks the pixels that show any of these items.
+    fn mask(&mut self, all: &[ItemId]) -> Option<(Size, Vec<bool>)> {
         self.shown?;
         let [width, height] = self.images[2].size;
-        let own = self.renderer.pixels_of_any(all);
-        Some(Border::of(item, Size::new(width, height), &own))
+        Some((Size::new(width, height), self.renderer.pixels_of_any(all)))
     }
 
     /// Returns the hit at a pixel of the picture at full size.

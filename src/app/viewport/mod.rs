@@ -76,7 +76,7 @@ pub(crate) struct Viewport {
     outline: [Option<Border>; 2],
     /// Whether the picture has changed since the last pick under the pointer.
     stale: bool,
-    /// The item of the last border requested for this picture.
+    /// The item of the last border requested.
     asked: Option<ItemId>,
     loupe: Loupe,
     /// The pixel and the observer of the last click. A second click there selects the item behind.
@@ -147,7 +147,8 @@ impl Viewport {
         news: News<Purpose>,
         requests: &mut Requests,
     ) {
-        if news.border.is_some() {
+        // A new picture comes with its border, if it has one.
+        if news.drawn.is_some() || news.border.is_some() {
             self.border = news.border;
         }
         for (pick, hit) in news.picked {
@@ -172,7 +173,6 @@ impl Viewport {
             // A new picture may show another item under the pointer; until the pick, the old hit is
             // used.
             self.stale = true;
-            self.asked = None;
         }
         if let Some(refined) = news.refined {
             self.take(ctx, refined.image);
@@ -270,8 +270,8 @@ impl Viewport {
     /// Outlines the item under the pointer.
     fn border_ui(&mut self, ui: &Ui, worker: &Worker<Purpose>) {
         let over = self.hovered.and_then(|(_, hit)| hit).map(|hit| hit.item);
-        if let Some(item) = over.filter(|_| over != self.asked) {
-            worker.border(item);
+        if over != self.asked {
+            worker.border(over);
             self.asked = over;
         }
         if let (Some(border), Some((rect, _))) = (&self.border, self.place)

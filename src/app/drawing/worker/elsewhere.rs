@@ -54,6 +54,7 @@ impl<P> Elsewhere<P> {
         };
         let at = picks.iter().map(|pick| pick.at).collect();
         (self.picks, self.sent) = (picks, wanted.or(self.sent.take()));
+        let border = border.map(|item| [item]);
         Some(write(&Request { picks: at, border, ideal, wanted: written }, &[]))
     }
 
@@ -81,6 +82,7 @@ impl<P> Elsewhere<P> {
         let Reply { border, drawn, refined, outline, explained, dial, ideal, picked, .. } = reply;
         if let Some(drawn) = drawn.and_then(|head| head.with_pixels(&mut pictures)) {
             (desk.news.drawn, desk.news.refined) = (Some(drawn), None);
+            desk.news.border = None;
         }
         let refined = refined.and_then(|head| head.with_pixels(&mut pictures));
         let ideal = ideal.and_then(|(window, size)| {

@@ -19,7 +19,8 @@ use marraztu_render::screen::coverage::PixelBox;
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub(super) struct Request {
     pub(super) picks: Vec<[usize; 2]>,
-    pub(super) border: Option<ItemId>,
+    /// The item under the pointer, if that changes. JSON has one `null`, hence the list.
+    pub(super) border: Option<[Option<ItemId>; 1]>,
     pub(super) ideal: Option<PixelBox>,
     pub(super) wanted: Option<Wanted>,
 }

@@ -47,6 +47,7 @@ pub(crate) struct Pick<P> {
 /// Results of the worker.
 #[derive(Debug)]
 pub(crate) struct News<P> {
+    /// The border of the item under the pointer. With a picture, it is the border there.
     pub(crate) border: Option<Border>,
     pub(crate) drawn: Option<Drawn>,
     /// The same picture with more samples per pixel; it arrives after `drawn`.
@@ -114,8 +115,8 @@ struct Shared<P> {
 struct Desk<P> {
     wanted: Option<Snapshot>,
     picks: VecDeque<Pick<P>>,
-    /// The item to outline, on request.
-    border: Option<ItemId>,
+    /// The item under the pointer to outline from now on, if that is to change.
+    border: Option<Option<ItemId>>,
     /// The window of the ideal to draw, on request.
     ideal: Option<PixelBox>,
     news: News<P>,
@@ -215,8 +216,8 @@ impl<P: Copy + Send + 'static> Worker<P> {
         self.ask(|desk| desk.picks.push_back(pick));
     }
 
-    /// Requests the border of an item in the last picture.
-    pub(crate) fn border(&self, item: ItemId) {
+    /// Requests the border of the item under the pointer, in the last picture and in those after.
+    pub(crate) fn border(&self, item: Option<ItemId>) {
         self.ask(|desk| desk.border = Some(item));
     }
 
@@ -391,7 +392,7 @@ impl<P> Shared<P> {
 /// picture.
 struct Asking<P> {
     picks: VecDeque<Pick<P>>,
-    border: Option<ItemId>,
+    border: Option<Option<ItemId>>,
     ideal: Option<PixelBox>,
     wanted: Option<Snapshot>,
 }
@@ -437,12 +438,14 @@ struct Painter {
     renderer: ViewportRenderer,
     last: Option<Snapshot>,
     outlined: Vec<ItemId>,
+    /// The item under the pointer.
+    hovered: Option<ItemId>,
 }
 
 impl Painter {
     fn new(painted: Arc<Painted>) -> Self {
         let renderer = ViewportRenderer::new(Instant::now, painted);
-        Self { renderer, last: None, outlined: Vec::new() }
+        Self { renderer, last: None, outlined: Vec::new(), hovered: None }
     }
 
     fn work<P: Copy + Send>(&mut self, shared: &Shared<P>, wake: &impl Fn(), due: Due<P>) {
@@ -451,10 +454,11 @@ impl Painter {
             Due::Refine => return self.refine(shared, wake),
             Due::Wait(_) | Due::Never => return,
         };
-        let Self { renderer, last, .. } = self;
+        let Self { renderer, last, hovered, .. } = self;
         // Picks and borders refer to the picture on screen, so they are answered before it changes.
         let picked: Vec<_> = picks.into_iter().map(|pick| (pick, renderer.hit(pick.at))).collect();
-        let border = border.and_then(|item| renderer.border(item, &[item]));
+        *hovered = border.unwrap_or(*hovered);
+        let border = border.flatten().and_then(|item| renderer.border_under_pointer(item));
         if !picked.is_empty() || border.is_some() {
             let mut desk = shared.lock();
             desk.news.picked.extend(picked);
@@ -495,7 +499,7 @@ impl Painter {
         wake: &impl Fn(),
         wanted: &Snapshot,
     ) -> bool {
-        let Self { renderer, outlined, .. } = self;
+        let Self { renderer, outlined, hovered, .. } = self;
         // The renderer asks between tiles, without a lock.
         let asked = || match shared.over.load(Ordering::Relaxed) {
             true => Asked::Nothing,
@@ -516,8 +520,12 @@ impl Painter {
             let others = others.and_then(|all| renderer.border(*first?, all));
             let outline = [own, others];
             outlined.clone_from(&wanted.options.outlined);
+            let hovered = hovered.filter(|_| drawn.is_some());
+            let border = hovered.and_then(|item| renderer.border_under_pointer(item));
             let mut desk = shared.lock();
             if drawn.is_some() {
+                // A border of the picture before would lie over this one.
+                desk.news.border = border;
                 (desk.news.drawn, desk.news.refined) = (drawn, None);
             }
             desk.news.outline = Some(outline);

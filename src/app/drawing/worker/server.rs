@@ -44,7 +44,7 @@ impl DrawingServer {
         for at in picks {
             self.worker.pick(Pick { at, purpose: () });
         }
-        if let Some(item) = border {
+        if let Some([item]) = border {
             self.worker.border(item);
         }
         if let Some(window) = ideal {
