@@ -178,6 +178,22 @@ fn measuring_can_be_given_up_and_ends_with_its_scene() {
 }
 
 #[test]
+fn the_rows_of_the_laboratory_stay_where_they_are_when_measuring_begins_and_ends() {
+    let mut editor = editor();
+    let place = |editor: &Editor| {
+        crate::panels::control(editor, Role::RadioButton, "Error metric: RMSE").rect()
+    };
+    let before = place(&editor);
+    click(&mut editor, Role::Button, "Thoroughly");
+    assert!(lab(&editor).running.is_some());
+    assert_eq!(place(&editor), before, "while measuring");
+    click(&mut editor, Role::Button, "Cancel");
+    until(&mut editor, "the end of measuring", |e| lab(e).running.is_none());
+    editor.settle();
+    assert_eq!(place(&editor), before, "afterwards");
+}
+
+#[test]
 fn a_lesson_ends_the_measurements_of_the_users_scene() {
     let mut editor = editor();
     editor.perform(Action::MeasurePlan);

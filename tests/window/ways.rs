@@ -133,6 +133,49 @@ fn every_action_is_in_the_palette_with_the_same_effect() {
     }
 }
 
+/// The texts and the narrow upright rectangles on the screen, such as scroll bars.
+fn texts_and_bars(editor: &Editor) -> (Vec<(String, egui::Rect)>, Vec<egui::Rect>) {
+    fn collect(
+        shape: &egui::Shape,
+        texts: &mut Vec<(String, egui::Rect)>,
+        bars: &mut Vec<egui::Rect>,
+    ) {
+        match shape {
+            egui::Shape::Vec(all) => all.iter().for_each(|shape| collect(shape, texts, bars)),
+            egui::Shape::Text(text) => {
+                texts.push((text.galley.text().to_owned(), text.visual_bounding_rect()));
+            }
+            egui::Shape::Rect(bar)
+                if (2.0..16.0).contains(&bar.rect.width()) && bar.rect.height() > 40.0 =>
+            {
+                bars.push(bar.rect);
+            }
+            _ => {}
+        }
+    }
+    let (mut texts, mut bars) = (Vec::new(), Vec::new());
+    let shapes = &editor.harness.output().shapes;
+    shapes.iter().for_each(|it| collect(&it.shape, &mut texts, &mut bars));
+    (texts, bars)
+}
+
+#[test]
+fn the_scroll_bar_of_a_menu_covers_no_key() {
+    let mut editor = Editor::of_size(640.0, 400.0);
+    open(&mut editor, &["File"]);
+    // The bar shows while the pointer is over the menu.
+    let entry = entries(&editor)[2].1.center();
+    editor.hover(entry);
+    editor.harness.run_steps(20);
+    let (texts, bars) = texts_and_bars(&editor);
+    let keys: Vec<_> = texts.iter().filter(|(text, _)| text.starts_with("Ctrl+")).collect();
+    assert!(keys.len() > 3 && !bars.is_empty(), "{keys:?} {bars:?}");
+    for (key, rect) in keys {
+        let covered = bars.iter().any(|bar| bar.intersects(*rect));
+        assert!(!covered, "{key} at {rect}: {bars:?}");
+    }
+}
+
 #[test]
 fn every_menu_fits_into_a_low_window() {
     for size in [[1024.0, 640.0], [640.0, 400.0]] {

@@ -8,7 +8,7 @@ use super::answer::End;
 use crate::app::widgets::color_picker::swatch;
 use crate::app::widgets::controls::{Switch, heading, take_focus};
 use crate::app::widgets::spheres::{self, Sphere};
-use crate::app::widgets::text::{file_name, grouped};
+use crate::app::widgets::text::{counted, file_name};
 use marraztu_core::base::color::Color;
 use marraztu_core::edit::items;
 use marraztu_core::scene::{
@@ -206,7 +206,8 @@ pub(crate) fn own_or_silver(loaded: &Loaded) -> MaterialChoice {
 pub(crate) fn summary(loaded: &Loaded) -> String {
     let mesh = &loaded.model.mesh;
     let faces = mesh.polygon_count();
-    let counts = format!("{} faces, {} vertices", grouped(faces), grouped(mesh.positions().len()));
+    let vertices = counted(mesh.positions().len(), "vertex", "vertices");
+    let counts = format!("{}, {vertices}", counted(faces, "face", "faces"));
     let more = loaded.findings.len().saturating_sub(1);
     match (loaded.findings.iter().find(|it| it.kind.is_loss()), more) {
         (None, _) => counts,

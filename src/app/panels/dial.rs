@@ -24,11 +24,14 @@ use marraztu_lab::estimate::Estimate;
 
 const WIDTH: f32 = 284.0;
 
+/// The distance from the left edge of the picture at which other panels may begin.
+pub(super) const RIGHT: f32 = WIDTH + 36.0;
+
 /// The right ends of the columns of samples, time and error.
 const COLUMNS: [f32; 3] = [134.0, 200.0, WIDTH - 6.0];
 
 /// The dial is hidden over a smaller picture.
-const LEAST: egui::Vec2 = vec2(330.0, 100.0);
+const LEAST: egui::Vec2 = vec2(400.0, 100.0);
 
 /// The greatest height of the dial when it unfolds.
 const UNFOLDED: f32 = 300.0;

@@ -79,7 +79,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
             ui.separator();
             submenu(ui, "History", |ui| {
                 ui.set_min_width(200.0);
-                if history::list_ui(ui, state, requests) {
+                if history::list_ui(ui, state, f32::INFINITY, requests) {
                     ui.close();
                 }
             });
@@ -169,7 +169,9 @@ fn within_window(ui: &mut Ui, add: impl FnOnce(&mut Ui)) {
     ui.set_min_width(200.0);
     let most = (ui.ctx().content_rect().height() - 2.0 * theme::ROW - 16.0).max(80.0);
     // A menu that would leave the window moves up before it scrolls.
-    ScrollArea::vertical().max_height(most).min_scrolled_height(most).show(ui, |ui| {
+    let area = ScrollArea::vertical().max_height(most).min_scrolled_height(most);
+    // The scroll bar lies next to the entries, not over their keys.
+    area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
         ui.set_min_width(200.0);
         add(ui);
     });

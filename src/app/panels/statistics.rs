@@ -5,33 +5,42 @@ use egui::{Align2, Ui};
 use crate::app::actions::Requests;
 use crate::app::state::{Shrink, State};
 use crate::app::widgets::plate::plate_ui;
-use crate::app::widgets::text::grouped;
-use marraztu_core::scene::ItemId;
+use crate::app::widgets::text::{counted, grouped};
+use marraztu_core::scene::{ItemId, Mesh};
 use marraztu_render::{Change, Damage, DamageCause};
+
+/// The height of the panel.
+pub(super) const HEIGHT: f32 = 120.0;
+
+/// The height of the name of the object under the pointer.
+const NAME: f32 = 26.0;
 
 /// Shows the panel in a corner of the picture; it makes no requests.
 pub(crate) fn show(ui: &mut Ui, state: &State, _: &mut Requests) {
     let statistics = &state.statistics;
     let shown = || state.scene.objects.iter().filter(|(_, object)| object.visible);
-    let sum = |count: fn(&marraztu_core::scene::Mesh) -> usize| {
-        grouped(shown().map(|(_, object)| count(&object.model.mesh)).sum())
+    let sum = |count: fn(&Mesh) -> usize| -> usize {
+        shown().map(|(_, object)| count(&object.model.mesh)).sum()
     };
     let text = format!(
-        "{} pictures in the last second, {:.1} ms each\n{} x {} pixels{}\n{}\n\
-        {} objects, {} vertices, {} faces\n{} of {} triangles drawn",
-        statistics.rate,
+        "{} in the last second, {:.1} ms each\n{} x {} pixels{}\n{}\n\
+        {}, {}, {}\n{} of {} drawn",
+        counted(statistics.rate as usize, "picture", "pictures"),
         statistics.time.as_secs_f64() * 1e3,
         statistics.size.width,
         statistics.size.height,
         shown_as(statistics.reduction.shrink),
         statistics.changes.as_ref().map_or_else(String::new, |changes| redrawn(state, changes)),
-        shown().count(),
-        sum(|mesh| mesh.positions().len()),
-        sum(marraztu_core::scene::Mesh::polygon_count),
+        counted(shown().count(), "object", "objects"),
+        counted(sum(|mesh| mesh.positions().len()), "vertex", "vertices"),
+        counted(sum(Mesh::polygon_count), "face", "faces"),
         grouped(statistics.triangles),
-        sum(|mesh| mesh.triangle_count()),
+        counted(sum(|mesh| mesh.triangle_count()), "triangle", "triangles"),
     );
-    plate_ui(ui, ui.max_rect(), Align2::LEFT_TOP, text);
+    // The dial has the corner above, and the name of the object under the pointer the one below.
+    let picture = ui.max_rect();
+    let above = picture.with_max_y(picture.bottom() - NAME);
+    plate_ui(ui, above, Align2::LEFT_BOTTOM, text);
 }
 
 /// Describes the enlargement of pixels in a smaller picture.
@@ -58,7 +67,8 @@ fn redrawn(state: &State, changes: &Damage) -> String {
         DamageCause::Order => "order changed".to_owned(),
         DamageCause::Items(items) => reasons(items, |item| state.name(item)),
     };
-    format!("{} of {} tiles drawn: {why}", changes.tiles(), changes.tiles_in_all())
+    let all = counted(changes.tiles_in_all(), "tile", "tiles");
+    format!("{} of {all} drawn: {why}", changes.tiles())
 }
 
 /// Describes changes of items by kind: "teapot moved, cube and 2 more look different".

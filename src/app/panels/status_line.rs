@@ -16,6 +16,8 @@ use crate::app::theme;
 use crate::app::widgets::controls;
 use crate::app::widgets::icons::Icon;
 use crate::app::widgets::number::short;
+use crate::app::widgets::text::counted;
+use marraztu_core::accuracy::Samples;
 use marraztu_core::edit::{steps, transform};
 use marraztu_core::scene::{
     CameraMode, Fill, Frame, ItemId, Observer, Projection, Subject, Transformation,
@@ -52,10 +54,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
 
 /// Shows a button that lists past notices with their details.
 fn past_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
-    let name = match state.past_notices.len() {
-        1 => "1 notice".to_owned(),
-        count => format!("{count} notices"),
-    };
+    let name = counted(state.past_notices.len(), "notice", "notices");
     let color = ui.visuals().weak_text_color();
     let galley = controls::text(ui, &name, TextStyle::Body, f32::INFINITY);
     let size = vec2(galley.size().x + theme::ROW, theme::ROW);
@@ -168,10 +167,7 @@ fn parts(state: &State) -> Vec<String> {
     });
     parts.extend(drawn(state));
     let on = scene.lights.iter().filter(|(_, light)| light.on).count();
-    parts.push(match on {
-        1 => "1 light".to_owned(),
-        _ => format!("{on} lights"),
-    });
+    parts.push(counted(on, "light", "lights"));
     let statistics = &state.statistics;
     if statistics.reduction != Reduction::NONE {
         let lost = statistics.lost.map(|lost| format!(" (error {lost:.1} of 255)"));
@@ -188,10 +184,9 @@ fn parts(state: &State) -> Vec<String> {
         let time = format!("{:.1} ms", statistics.time.as_secs_f64() * 1000.0);
         // Refining takes longer, and is not timed.
         let is_refined = statistics.refined.is_some_and(|now| now != state.settings.samples);
-        parts.push(match state.settings.samples.count() {
-            _ if !is_refined => time,
-            1 => format!("1 sample took {time}"),
-            count => format!("{count} samples took {time}"),
+        parts.push(match is_refined {
+            false => time,
+            true => format!("{} took {time}", samples(state.settings.samples)),
         });
     }
     parts
@@ -202,9 +197,13 @@ fn refined(state: &State) -> Option<String> {
     let most = state.refined_to().filter(|_| state.statistics.pictures > 0)?;
     let now = state.statistics.refined.unwrap_or(state.settings.samples);
     Some(match now.count() < most.count() {
-        true => format!("refining: {} of {} samples", now.count(), most.count()),
-        false => format!("refined: {} samples", now.count()),
+        true => format!("refining: {} of {}", now.count(), samples(most)),
+        false => format!("refined: {}", samples(now)),
     })
+}
+
+fn samples(samples: Samples) -> String {
+    counted(samples.count() as usize, "sample", "samples")
 }
 
 /// Describes unusual display modes: polygon by polygon, wireframe, isolated selection.

@@ -16,6 +16,7 @@ use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::controls::{focus_ring, icon_at, put_text, text};
 use crate::app::widgets::icons::Icon;
+use crate::app::widgets::text::counted;
 
 /// The seconds after which a held button lists its steps.
 const HOLD: f64 = 0.35;
@@ -133,8 +134,7 @@ fn list_ui(
     ui.separator();
     ui.weak(match pointed {
         0 => format!("{name} how many steps?"),
-        1 => format!("{name} 1 step"),
-        _ => format!("{name} {pointed} steps"),
+        _ => format!("{name} {}", counted(pointed.into(), "step", "steps")),
     });
     chosen
 }

@@ -129,7 +129,11 @@ pub(crate) fn in_words(error: &Error) -> String {
         brief(figures.differing * 100.0)
     );
     if error.coverage > 0 {
-        text += &format!(", {} pixels show another triangle", error.coverage);
+        let (pixels, show) = match error.coverage {
+            1 => ("pixel", "shows"),
+            _ => ("pixels", "show"),
+        };
+        text += &format!(", {} {pixels} {show} another triangle", error.coverage);
     }
     text
 }

@@ -15,6 +15,11 @@ pub(crate) fn grouped(number: usize) -> String {
     text
 }
 
+/// Counts things: "1 face", "1,202 vertices".
+pub(crate) fn counted(count: usize, one: &str, many: &str) -> String {
+    format!("{} {}", grouped(count), if count == 1 { one } else { many })
+}
+
 /// Returns the last part of a path.
 pub(crate) fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
@@ -31,6 +36,12 @@ pub(crate) fn one_or_count<T>(all: &[T], kind: &str, name: impl Fn(&T) -> String
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn one_thing_is_counted_in_the_singular() {
+        let text = [0, 1, 2, 1_202].map(|count| counted(count, "vertex", "vertices"));
+        assert_eq!(text, ["0 vertices", "1 vertex", "2 vertices", "1,202 vertices"]);
+    }
 
     #[test]
     fn thousands_are_told_apart() {

@@ -1,6 +1,6 @@
 //! The controls of the laboratory: measuring, error metric, budgets, comparison, attribution.
 
-use egui::{ProgressBar, RichText, ScrollArea, Ui};
+use egui::{ProgressBar, RichText, ScrollArea, TextStyle, Ui, vec2};
 
 use crate::app::actions::{LabRequest, Request, Requests};
 use crate::app::state::State;
@@ -69,6 +69,18 @@ pub(super) fn measure_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
             }
         }
     });
+    // Two lines are always reserved, so the rows below stay where they are.
+    let lines = 2.0 * ui.text_style_height(&TextStyle::Body) + ui.spacing().item_spacing.y;
+    ui.allocate_ui(vec2(ui.available_width(), lines), |ui| {
+        ui.set_min_height(lines);
+        progress_ui(ui, state);
+        age_ui(ui, state);
+    });
+}
+
+/// Shows the time left, or why nothing was measured.
+fn progress_ui(ui: &mut Ui, state: &State) {
+    let lab = &state.lab;
     if let Some(fraction) = lab.running {
         ui.weak(match lab.left {
             None if fraction <= 0.0 => "Drawing the ideal first".to_owned(),
@@ -80,7 +92,6 @@ pub(super) fn measure_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     if let Some(why) = &lab.failed {
         ui.colored_label(theme::error(ui.visuals()), format!("Not measured: {why}."));
     }
-    age_ui(ui, state);
 }
 
 /// Warns if the results belong to another picture.

@@ -149,11 +149,14 @@ fn one_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     }
 }
 
-/// Shows the verdict, in at most a share of the height.
+/// Shows the verdict in a share of the height, which stays the same when sentences arrive: the plot
+/// and the table keep their places.
 fn verdict_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
+    if state.lab.shown().is_none() && state.lab.running.is_none() {
+        return;
+    }
     let most = VERDICT * ui.available_height();
-    let area =
-        ScrollArea::vertical().id_salt("verdict").max_height(most).auto_shrink([false, true]);
+    let area = ScrollArea::vertical().id_salt("verdict").max_height(most).auto_shrink(false);
     area.show(ui, |ui| plots::verdict_ui(ui, state, requests));
     ui.add_space(theme::GAP);
 }

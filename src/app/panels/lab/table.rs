@@ -9,6 +9,7 @@ use crate::app::widgets::controls::{
     focus_ring, no_narrower, put_text, right_text, row_ground, text,
 };
 use crate::app::widgets::regions;
+use crate::app::widgets::text::counted;
 use marraztu_core::accuracy::Axis;
 use marraztu_lab::candidates::Group;
 use marraztu_lab::error::{Error, Region};
@@ -207,8 +208,10 @@ fn row_ui(
         Verdict::Busy => "the machine was too busy to tell",
     };
     let hint = format!(
-        "{verdict}, {} pairs, {} discarded; {} pixels show another triangle",
-        point.ratio.pairs, point.ratio.thrown, error.coverage
+        "{verdict}, {}, {} discarded; {} with another triangle",
+        counted(point.ratio.pairs, "pair", "pairs"),
+        point.ratio.thrown,
+        counted(error.coverage, "pixel", "pixels")
     );
     if response.on_hover_text(hint).clicked() {
         requests.push(Request::Settings(row.chosen));
@@ -227,12 +230,12 @@ fn foot_ui(ui: &mut Ui, report: &Report) {
     small(
         ui,
         format!(
-            "{width} x {height} pixels, {} threads, {}. The default takes {} ms; {}, and so are \
+            "{width} x {height} pixels, {}, {}. The default takes {} ms; {}, and so are \
                 differences within the interval of a row (95%). * is the default; a bar marks \
                 choices that no other choice beats in both time and error. Errors of an axis are \
                 relative to the default with this axis alone at its most exact; all others, to \
                 the ideal: 256 samples per pixel, each lit.",
-            findings.threads,
+            counted(findings.threads, "thread", "threads"),
             findings.instructions,
             brief(findings.control.a_ms),
             if findings.floor > TOO_BUSY {

@@ -139,7 +139,9 @@ impl Axis {
 
     /// One of its choices in a sentence: "nearest texture filter", "depth in 16 bits".
     pub fn in_words(&self, choice: &Choice) -> String {
-        self.phrase.replace("{}", &uncapitalized(choice.label))
+        let phrase = self.phrase.replace("{}", &uncapitalized(choice.label));
+        // The only phrase that counts.
+        if choice.label == "1" { phrase.replace("samples", "sample") } else { phrase }
     }
 
     /// The choice of the default settings.
