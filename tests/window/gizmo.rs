@@ -118,6 +118,47 @@ fn an_amount_is_typed_without_the_mouse() {
 }
 
 #[test]
+fn enter_held_after_an_amount_asks_for_no_polygon() {
+    let mut editor = with_ship();
+    editor.perform(Action::TypeAmount);
+    type_letters(&mut editor, "z-20");
+    editor.hold(Named(Key::Enter), 3);
+    assert_eq!(place(&editor), DVec3::new(-100.0, 0.0, -20.0));
+    assert!(editor.state().message.is_none(), "{:?}", editor.state().message);
+}
+
+#[test]
+fn enter_after_the_release_of_a_handle_confirms_the_typed_amount() {
+    let mut editor = with_ship();
+    let at = pull(&mut editor, 50.0);
+    type_letters(&mut editor, "y12");
+    editor.button(at, LEFT, false);
+    for (press, is_refused) in [(1, false), (2, true)] {
+        editor.press(Named(Key::Enter));
+        assert_eq!(place(&editor), DVec3::new(-100.0, 12.0, 0.0));
+        let told = editor.state().message.is_some();
+        assert_eq!(told, is_refused, "press {press}: there is no polygon mode");
+    }
+}
+
+#[test]
+fn an_amount_that_arrives_within_one_frame_is_typed_as_a_whole() {
+    let mut editor = with_ship();
+    let lights = editor.scene().lights;
+    let ctx = editor.harness.ctx.clone();
+    editor.harness.state_mut().perform(&ctx, Action::TypeAmount, Gesture::Whole);
+    for (key, text) in [(Key::Z, "z"), (Key::Num2, "2"), (Key::Num0, "0")] {
+        editor.key(key, true, egui::Modifiers::NONE);
+        editor.harness.event(egui::Event::Text(text.to_owned()));
+        editor.key(key, false, egui::Modifiers::NONE);
+    }
+    editor.settle();
+    editor.press(Named(Key::Enter));
+    assert_eq!(place(&editor), DVec3::new(-100.0, 0.0, 20.0));
+    assert!(editor.scene().lights == lights, "no digit has switched a light");
+}
+
+#[test]
 fn digits_typed_with_the_pointer_over_the_picture_are_one_step_that_esc_takes_back() {
     let mut editor = with_ship();
     let before = editor.scene();

@@ -263,3 +263,138 @@ fn a_material_file_that_another_program_saves_is_reloaded_with_its_model() {
     until(&mut editor, |editor| editor.scene() != before);
     assert_eq!(editor.state().history.steps().last(), Some("Reload sail"));
 }
+
+#[test]
+fn a_model_that_has_changed_on_disk_is_mentioned_and_reloaded_on_request() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("sail.obj");
+    let mut editor = with_file(&path);
+    editor.settle();
+    for (text, reloads) in [(TWO, false), (ONE, true)] {
+        std::fs::write(&path, text).unwrap();
+        until(&mut editor, |editor| editor.shows("sail.obj has changed on disk"));
+        let before = editor.scene();
+        if reloads {
+            editor.perform(Action::ReloadModels);
+        } else {
+            crate::panels::click(&mut editor, egui::accesskit::Role::Button, "Reload");
+        }
+        until(&mut editor, |editor| editor.scene() != before);
+        editor.settle();
+        assert!(!editor.shows("has changed on disk"));
+    }
+}
+
+/// The white borders over the picture: that of the item under the pointer.
+fn borders(editor: &Editor) -> Vec<egui::Mesh> {
+    let shapes = editor.harness.output().shapes.iter();
+    let meshes = shapes.filter_map(|clipped| match &clipped.shape {
+        Shape::Mesh(mesh) => Some(egui::Mesh::clone(mesh)),
+        _ => None,
+    });
+    let is_white = |mesh: &egui::Mesh| {
+        mesh.texture_id == egui::TextureId::default()
+            && mesh.vertices.iter().any(|vertex| vertex.color == egui::Color32::WHITE)
+    };
+    meshes.filter(is_white).collect()
+}
+
+/// The place of the ship at (-100, 0, 0), seen from (0, 0, 400).
+fn ship(editor: &Editor) -> egui::Pos2 {
+    let rect = editor.picture();
+    let aside = -100.0 / 400.0 / 22.5_f32.to_radians().tan();
+    rect.center() + egui::vec2(aside, 0.0) * rect.size().min_elem() / 2.0
+}
+
+#[test]
+fn the_border_under_the_pointer_is_that_of_the_picture_on_screen() {
+    let mut editor = Editor::new();
+    let ship = ship(&editor);
+    editor.hover(ship);
+    editor.settle();
+    let before = borders(&editor);
+    assert_eq!(before.len(), 1, "the pointer is over a ship");
+    // The camera moves, and the very first frame with the new picture is looked at.
+    let ctx = editor.harness.ctx.clone();
+    editor.harness.state_mut().perform(&ctx, Action::StepZUp, Gesture::Whole);
+    editor.harness.step();
+    editor.harness.state().wait_for_picture();
+    editor.harness.step();
+    let first = borders(&editor);
+    assert_ne!(first, before);
+    editor.settle();
+    assert_eq!(first, borders(&editor));
+    // Another scene has other borders.
+    editor.harness.state_mut().perform(&ctx, Action::SubjectObject, Gesture::Whole);
+    editor.harness.state_mut().perform(&ctx, Action::Delete, Gesture::Whole);
+    editor.harness.step();
+    editor.harness.state().wait_for_picture();
+    editor.harness.step();
+    assert!(borders(&editor).is_empty(), "the ship is gone");
+}
+
+#[test]
+fn a_wall_under_the_pointer_has_no_border() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("wall.obj");
+    let wall = "v -9e3 -9e3 -900\nv 9e3 -9e3 -900\nv 9e3 9e3 -900\nv -9e3 9e3 -900\nf 1 2 3 4\n";
+    std::fs::write(&path, wall).unwrap();
+    let mut editor = with_model(&path);
+    let at = editor.at(0.5, 0.9);
+    editor.hover(at);
+    editor.settle();
+    assert!(editor.shows("wall") && borders(&editor).is_empty());
+    let ship = ship(&editor);
+    editor.hover(ship);
+    editor.settle();
+    assert_eq!(borders(&editor).len(), 1);
+}
+
+/// The texts over the picture, with their places.
+fn places(editor: &Editor) -> Vec<(String, egui::Rect)> {
+    fn collect(shape: &Shape, clip: egui::Rect, places: &mut Vec<(String, egui::Rect)>) {
+        match shape {
+            Shape::Vec(all) => all.iter().for_each(|shape| collect(shape, clip, places)),
+            Shape::Text(text) => {
+                let rect = text.visual_bounding_rect().intersect(clip);
+                if rect.width() > 1.0 && rect.height() > 1.0 {
+                    places.push((text.galley.text().to_owned(), rect));
+                }
+            }
+            _ => {}
+        }
+    }
+    let (mut places, picture) = (Vec::new(), editor.picture());
+    for clipped in &editor.harness.output().shapes {
+        collect(&clipped.shape, clipped.clip_rect, &mut places);
+    }
+    // Letters of the axes may lie one behind the other.
+    places.retain(|(text, rect)| picture.contains_rect(*rect) && text.chars().count() > 2);
+    places
+}
+
+#[test]
+fn statistics_history_and_dial_do_not_share_a_corner() {
+    use marraztu::app::panels::Panel;
+    for [width, height] in [[1280.0, 800.0], [640.0, 400.0]] {
+        let mut editor = Editor::of_size(width, height);
+        for _ in 0..20 {
+            editor.perform(Action::StepXUp);
+        }
+        editor.perform_all(&[Action::Panel(Panel::History), Action::Panel(Panel::Statistics)]);
+        editor.hover(editor.at(0.5, 0.5));
+        editor.harness.run_steps(3);
+        let all = places(&editor);
+        for text in ["triangles drawn", "History"] {
+            let is_it = |(other, _): &(String, egui::Rect)| other.contains(text);
+            assert!(all.iter().any(is_it), "{text} in {width} x {height}: {all:?}");
+        }
+        for (i, (text, rect)) in all.iter().enumerate() {
+            for (other, place) in &all[i + 1..] {
+                let both = rect.intersect(*place);
+                let overlap = both.width() > 2.0 && both.height() > 3.0;
+                assert!(!overlap, "{text:?} and {other:?} share {both} in {width} x {height}");
+            }
+        }
+    }
+}

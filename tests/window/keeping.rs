@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 use egui::accesskit::Role;
 use egui::{Key, ThemePreference};
 use marraztu::app::actions::Action;
-use marraztu::app::actions::Chord::{Command, Lower, Named};
+use marraztu::app::actions::Chord::{Command, Lower};
 use marraztu::app::actions::Request;
 use marraztu::app::panels::Panel;
 use marraztu::app::state::layout::Layout;
@@ -231,7 +231,7 @@ fn saved_undone_or_discarded_work_is_not_offered() {
     let mut discarded = Editor::keeping(folder.path());
     assert_eq!(discarded.is_offered(), 0, "it was undone");
     discarded.press(Lower(Key::Z));
-    assert!(!discarded.leaves_by(Named(Key::Escape)));
+    assert!(!discarded.leaves_by(Command(Key::Q)));
     discarded.click_label("Discard");
     discarded.harness.state_mut().end_keeping();
     drop(discarded);
@@ -420,7 +420,7 @@ fn recovered(own: &Path, file: &Path) -> u64 {
     }
     let steps = editor.steps_of_camera();
     // A regular exit, after which the next program has nothing to recover.
-    editor.leaves_by(Named(Key::Escape));
+    editor.leaves_by(Command(Key::Q));
     if editor.shows("Save the scene?") {
         editor.click_label("Discard");
     }

@@ -5,7 +5,7 @@
 
 use egui::{Key, Modifiers, PointerButton, Vec2};
 use marraztu::app::actions::Action;
-use marraztu::app::actions::Chord::{Command, CommandShift, Either, Lower, Named};
+use marraztu::app::actions::Chord::{Command, CommandShift, Either, Lower};
 use marraztu_core::scene::Pose;
 
 use crate::editor::Editor;
@@ -111,5 +111,5 @@ fn looking_around_needs_no_saving_and_u_takes_it_back() {
     assert_eq!(editor.pose(), first);
     let mut editor = Editor::new();
     editor.look_around();
-    assert!(editor.leaves_by(Named(Key::Escape)));
+    assert!(editor.leaves_by(Command(Key::Q)));
 }

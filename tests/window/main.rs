@@ -8,6 +8,7 @@ mod clipboard;
 mod dial;
 mod dialogs;
 mod editor;
+mod escaping;
 mod examples;
 mod first_models;
 mod folders;

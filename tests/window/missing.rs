@@ -50,6 +50,14 @@ fn elsewhere() -> (tempfile::TempDir, [PathBuf; 2]) {
 }
 
 #[test]
+fn esc_dismisses_the_notice_about_missing_files() {
+    let (mut editor, ..) = opened();
+    editor.wait_until(|editor| editor.shows("3 files of the scene are missing"));
+    assert!(!editor.leaves_by(Named(Key::Escape)));
+    assert!(!editor.shows("3 files of the scene are missing"));
+}
+
+#[test]
 fn a_scene_opens_with_labelled_boxes_for_missing_files() {
     let (mut editor, ..) = opened();
     assert!([1, 2, 3].iter().all(|id| is_box(&editor, *id)));

@@ -8,10 +8,12 @@ use std::path::Path;
 use egui::Key;
 use egui::accesskit::Role;
 use marraztu::app::actions::Action;
-use marraztu::app::actions::Chord::Command;
+use marraztu::app::actions::Chord::{Command, Named};
 use marraztu::app::actions::Request;
 use marraztu::app::state::Notice;
+use marraztu_core::accuracy::Shot;
 use marraztu_core::scene::{ItemId, UpAxis};
+use marraztu_render::{Renderer, plan_frame};
 
 use crate::dialogs::{CUBE, folder_with};
 use crate::editor::Editor;
@@ -119,7 +121,7 @@ fn why_outside_the_view_offers_to_frame() {
 }
 
 #[test]
-fn the_up_axis_is_switched_in_the_notice_as_one_step_and_remembered() {
+fn the_up_axis_is_switched_in_the_notice_as_one_step_and_for_others_only_on_request() {
     let (folder, path) = folder_with("tower.obj", TOWER);
     let mut editor = Editor::of_size(1280.0, 800.0);
     editor.open_alone(&path);
@@ -133,14 +135,162 @@ fn the_up_axis_is_switched_in_the_notice_as_one_step_and_remembered() {
     assert_eq!((editor.up(), editor.top()), (UpAxis::Y, 1.0));
     editor.press(Command(Key::Y));
     assert_eq!(editor.top(), 5.0);
-    // The next model opens with the same axis, and its notice says so.
+    // The next model opens as its file is, until the user asks for another default.
     let next = folder.path().join("next.obj");
     std::fs::write(&next, TOWER).unwrap();
-    editor.perform(Action::New);
-    editor.click_label("Discard");
-    editor.open_alone(&next);
-    assert_eq!(editor.up(), UpAxis::Z);
-    assert!(editor.shows("Z is up, as you chose last."));
+    for (asks, expected) in [(false, UpAxis::Y), (true, UpAxis::Z)] {
+        if asks {
+            click(&mut editor, Role::Button, "Z up");
+            editor.wait_until(|editor| editor.up() == UpAxis::Z);
+            click(&mut editor, Role::Button, "Use for all from now on");
+            assert!(!editor.shows("Use for all from now on"), "it is the default now");
+        }
+        editor.perform(Action::New);
+        editor.click_label("Discard");
+        editor.open_alone(&next);
+        assert_eq!(editor.up(), expected);
+        assert_eq!(editor.shows("Z is up, as you prefer."), asks);
+    }
+}
+
+#[test]
+fn an_axis_chosen_in_the_dialog_of_a_model_is_that_of_this_model() {
+    let (_folder, path) = folder_with("tower.obj", TOWER);
+    let mut editor = Editor::of_size(1280.0, 800.0);
+    editor.open_alone(&path);
+    let id = editor.view().object.unwrap();
+    editor.ask(Request::TurnUp(vec![id], UpAxis::Z));
+    editor.wait_until(|editor| editor.up() == UpAxis::Z);
+    assert_eq!(editor.state().up, UpAxis::Y);
+}
+
+/// Hides all objects and asks for each why it is not seen.
+fn with_hidden_objects() -> Editor {
+    let mut editor = Editor::of_size(1280.0, 800.0);
+    editor.perform(Action::SubjectObject);
+    for _ in 0..editor.scene().objects.len() {
+        editor.perform_all(&[Action::ToggleVisible, Action::WhyUnseen, Action::NextItem]);
+    }
+    editor
+}
+
+#[test]
+fn notices_of_one_kind_are_shown_as_one_with_a_count() {
+    let mut editor = with_hidden_objects();
+    assert_eq!(editor.state().notices.len(), 3);
+    assert!(editor.shows("3 objects are hidden") && !editor.shows("r_falke is hidden"));
+    let steps = editor.steps();
+    click(&mut editor, Role::Button, "Show all");
+    assert!(editor.scene().objects.iter().all(|(_, object)| object.visible));
+    assert_eq!(editor.steps(), steps + 1);
+    assert!(editor.state().notices.is_empty());
+}
+
+#[test]
+fn a_notice_is_withdrawn_when_it_no_longer_holds() {
+    for way in [Action::Undo, Action::ToggleVisible, Action::Delete] {
+        let mut editor = Editor::of_size(1280.0, 800.0);
+        editor.perform_all(&[Action::SubjectObject, Action::ToggleVisible, Action::WhyUnseen]);
+        assert!(editor.shows("r_falke is hidden"));
+        editor.perform(way);
+        assert!(!editor.shows("r_falke is hidden"), "{way:?}");
+    }
+}
+
+#[test]
+fn a_notice_about_an_object_out_of_view_goes_once_the_view_shows_it() {
+    let mut editor = Editor::of_size(1280.0, 800.0);
+    // Half a turn away.
+    for _ in 0..18 {
+        editor.perform(Action::StepXUp);
+    }
+    editor.perform(Action::WhyUnseen);
+    editor.wait_until(|editor| !editor.state().notices.is_empty());
+    assert!(editor.shows("r_falke is out of view"));
+    for _ in 0..18 {
+        editor.perform(Action::StepXDown);
+    }
+    editor.wait_until(|editor| editor.state().notices.is_empty());
+}
+
+/// Counts the objects with a pixel in the picture.
+fn seen(editor: &Editor) -> usize {
+    let state = editor.state();
+    let size = state.statistics.size;
+    let shot = Shot::new(&state.scene, &state.view, &state.settings, size);
+    let mut renderer = Renderer::default();
+    renderer.render(&plan_frame(&shot));
+    let ids = state.scene.objects.ids().map(ItemId::Object);
+    ids.filter(|id| renderer.pixels_of(*id).contains(&true)).count()
+}
+
+/// A scene of 60 cubes in a row, some of them seen.
+const ROW: &str = r#"(
+    version: 1,
+    objects: [OBJECTS],
+    cameras: [(id: 99, name: "camera 1", eye: (0.0, 0.0, 30.0))],
+    view: (subject: Object, object: Some(1), camera: 99),
+)"#;
+
+#[test]
+fn a_scene_with_many_objects_out_of_view_opens_with_one_notice_that_counts_only_them() {
+    let (folder, _path) = folder_with("cube.obj", CUBE);
+    let object = |i: usize| {
+        let x = 3 * i;
+        format!(
+            "(id: {}, name: \"c{i}\", model: File(path: \"cube.obj\"), placement: (\
+            (1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), ({x}, 0, 0, 1))),",
+            i + 1
+        )
+    };
+    let objects: String = (0..60).map(object).collect();
+    let file = folder.path().join("row.marraztu");
+    std::fs::write(&file, ROW.replace("OBJECTS", &objects)).unwrap();
+    let mut editor = Editor::of_size(1280.0, 800.0);
+    editor.ask(Request::LoadFiles(vec![file]));
+    editor.wait_until(|editor| !editor.state().notices.is_empty());
+    editor.settle();
+    // What the picture shows decides.
+    let unseen = editor.state().notices.len();
+    let shown = seen(&editor);
+    assert_eq!(unseen + shown, 60);
+    assert!(shown > 2, "{shown} are seen");
+    assert!(editor.shows(&format!("{unseen} objects are")), "one notice");
+    let buttons = editor.harness.query_all_by_label("Frame all").count();
+    assert_eq!(buttons, 1);
+    click(&mut editor, Role::Button, "Frame all");
+    assert_eq!(seen(&editor), 60);
+    assert!(editor.state().notices.is_empty());
+}
+
+#[test]
+fn notices_cover_neither_the_dial_nor_the_axes_and_stay_in_the_picture() {
+    for size in [[1280.0, 800.0], [900.0, 640.0], [640.0, 400.0]] {
+        let mut editor = Editor::of_size(size[0], size[1]);
+        editor.perform_all(&[Action::SubjectObject, Action::ToggleVisible, Action::WhyUnseen]);
+        let (_folder, path) = folder_with("odd.obj", &format!("{CUBE}f 1 2\n"));
+        editor.ask(Request::LoadFiles(vec![path]));
+        editor.wait_until(|editor| editor.shows("Material of"));
+        editor.press(Named(Key::Enter));
+        editor.wait_until(|editor| editor.state().notices.len() > 1);
+        editor.harness.run_steps(4);
+        let places = ["Dismiss", "Dismiss all", "Show"];
+        let picture = editor.picture();
+        let dial = editor.harness.query_all_by_label_contains("Accuracy").next();
+        let dial = dial.map(|dial| dial.rect());
+        for place in places {
+            let rect = control(&editor, Role::Button, place).rect();
+            assert!(picture.contains_rect(rect), "{place} at {rect} in {size:?}");
+            let axes = egui::Rect::from_min_max(
+                picture.right_top() - egui::vec2(92.0, 0.0),
+                picture.right_top() + egui::vec2(0.0, 92.0),
+            );
+            assert!(!rect.intersects(axes), "{place} at {rect} in {size:?}");
+            assert!(dial.is_none_or(|dial| !rect.intersects(dial)), "{place} in {size:?}");
+        }
+        click(&mut editor, Role::Button, "Dismiss all");
+        assert!(editor.state().notices.is_empty());
+    }
 }
 
 #[test]

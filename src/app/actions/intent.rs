@@ -29,6 +29,8 @@ pub(crate) enum Intent {
     Undo,
     /// Go forward one step in the history.
     Redo,
+    /// Dismiss, cancel or deselect; then quit.
+    Escape,
     /// Use files.
     File(FileIntent),
     /// Add a camera after asking for its material.

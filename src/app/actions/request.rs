@@ -8,7 +8,7 @@ use super::table::Action;
 use crate::app::chord::Chord;
 use crate::app::state::laboratory::Compare;
 use crate::app::state::layout::Layout;
-use crate::app::state::{DrawingChoices, State};
+use crate::app::state::{DrawingChoices, NoticeKind, State};
 use marraztu_core::accuracy::Settings;
 use marraztu_core::edit::several::Others;
 use marraztu_core::edit::{Gesture, Refusal};
@@ -80,20 +80,26 @@ pub enum Request {
     OpenFiles(Vec<PathBuf>),
     /// Asks for models, and opens them as if they were dropped.
     AskModels,
-    /// Lists all details of the notice at this index.
-    Details(usize),
+    /// Does what the notices of this kind offer.
+    Accept(NoticeKind),
+    /// Lists all details of the notices of this kind.
+    Details(NoticeKind),
     /// Cancels loading the file at this index.
     CancelLoading(usize),
     /// Cancels making the file at this index.
     CancelMaking(usize),
-    /// Dismisses the notice at this index.
-    PutAway(usize),
-    /// Moves the notice at this index to the status line.
-    Settle(usize),
+    /// Dismisses the notices of this kind.
+    PutAway(NoticeKind),
+    /// Moves the notices of this kind to the status line.
+    Settle(NoticeKind),
+    /// Dismisses all notices.
+    DismissNotices,
     /// Removes all notices from the status line.
     ClearNotices,
     /// Reads the models of objects again, with this axis of their files as the up axis.
     TurnUp(Vec<ObjectId>, UpAxis),
+    /// Uses this up axis for all models from now on, unless their files state one.
+    UpByDefault(UpAxis),
     /// Shows the unsaved work at this index.
     Recover(usize),
     /// Discards the unsaved work at this index.

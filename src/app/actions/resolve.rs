@@ -80,6 +80,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
             Err(Refusal::NothingUndone)
         }
         Action::Redo => Ok(Intent::Redo),
+        Action::Escape => Ok(Intent::Escape),
         Action::TakeBack => each(&transform::take_back),
         Action::Rename => selected(state).map(Intent::Rename),
         Action::Duplicate => {

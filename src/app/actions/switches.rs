@@ -126,7 +126,7 @@ impl Action {
             Self::AddCylinder | Self::AddTorus => return None,
             Self::DropToGround | Self::ResetPlacement => return None,
             Self::AlignX | Self::AlignY | Self::AlignZ => return None,
-            Self::SelectAll | Self::SelectNone | Self::TypeAmount => return None,
+            Self::Escape | Self::SelectAll | Self::SelectNone | Self::TypeAmount => return None,
             Self::NextItem | Self::NextPolygon | Self::NextSubject => return None,
             Self::StepXUp | Self::StepXDown | Self::StepYUp | Self::StepYDown => return None,
             Self::StepZUp | Self::StepZDown | Self::FrameSelection | Self::FrameAll => return None,

@@ -64,7 +64,7 @@ actions! {
     CopyPicture File ONCE [CommandShift(Key::C)]
         "Copy picture" "Copies the picture in the viewport to the clipboard."
         "screenshot clipboard image capture snapshot";
-    Quit File ONCE [Named(Key::Escape), Command(Key::Q)]
+    Quit File ONCE [Command(Key::Q)]
         "Quit" "Closes the program; asks first if there are unsaved changes."
         "exit leave close";
 
@@ -108,6 +108,9 @@ actions! {
     SelectAll Edit ONCE [Command(Key::A)]
         "Select all" "Selects all items of the subject; pressed again, everything."
         "everything several multiple";
+    Escape Edit ONCE [Named(Key::Escape)]
+        "Cancel" "Dismisses notices, cancels work or deselects; twice with nothing left, it quits."
+        "escape dismiss abort stop close deselect quit";
     SelectNone Edit ONCE []
         "Select one" "Selects only the current item, which the keys act on."
         "none deselect clear single nothing";

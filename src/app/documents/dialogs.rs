@@ -19,7 +19,6 @@ use super::material_dialog::MaterialDialog;
 use super::picture_dialog::{PictureChoices, PictureDialog};
 use super::questions::{self, close_ui, limit_width};
 use super::wanted::{After, Wanted};
-use crate::app::input::keyboard::Keyboard;
 use crate::app::tasks::{Outcome, Task};
 use crate::app::widgets::controls::heading;
 
@@ -205,10 +204,6 @@ impl Dialogs {
     /// Shows the open dialogs. Returns the answer, if any.
     pub(crate) fn ui(&mut self, ctx: &Context) -> Option<Answer> {
         if let Some(answer) = self.hear_system() {
-            if matches!(answer, Answer::NoFile) {
-                // The dialog may have been closed by Esc.
-                Keyboard::note_escape(ctx);
-            }
             return Some(answer);
         }
         // Only the top dialog is shown and takes input.

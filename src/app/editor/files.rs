@@ -9,7 +9,7 @@ use egui::Context;
 
 use super::App;
 use super::turning::usual_up;
-use super::unseen::out_of_sight;
+use super::unseen::{Searches, out_of_sight};
 use crate::app::documents::answer::Answer;
 use crate::app::documents::dialogs::Dialog;
 use crate::app::documents::loading::{Fetched, FetchedModel, Loading, Queued, Wish, is_scene};
@@ -19,7 +19,7 @@ use crate::app::documents::material_dialog::{
 use crate::app::documents::wanted::{After, Wanted};
 use crate::app::drawing::images;
 use crate::app::state::dial::DialState;
-use crate::app::state::{Notice, Offer, Reduction, State};
+use crate::app::state::{Notice, NoticeKind, OUT_OF_VIEW, Offer, Reduction, State};
 use crate::app::tasks::{Outcome, Task};
 use crate::app::widgets::text::file_name;
 use marraztu_core::accuracy::{AccuracyPreset, Settings};
@@ -93,9 +93,6 @@ impl App {
 
     fn take_material(&mut self, ctx: &Context, dialog: MaterialDialog, choices: MaterialChoices) {
         let MaterialChoices { material, options, texture } = choices;
-        if dialog.loaded.as_ref().is_some_and(|(_, loaded)| loaded.model.options.up != options.up) {
-            self.state.up = options.up;
-        }
         let Some((path, loaded)) = dialog.loaded else {
             let model = io::cam_model();
             let command = items::insert_camera(&self.state.scene, model, material);
@@ -224,7 +221,8 @@ impl App {
             }
             Fetched::Texture(_, Err(error)) => self.tell_load_error(&error),
             Fetched::Texture(ids, Ok((texture, findings))) => {
-                let notice = |finding: Finding| Notice::new(finding.to_string());
+                let notice =
+                    |finding: Finding| Notice::new(NoticeKind::Opened, finding.to_string());
                 self.state.notices.extend(findings.into_iter().map(notice));
                 let set = |object: &mut Object| object.texture = Some(texture.clone());
                 let scene = &self.state.scene;
@@ -289,14 +287,13 @@ impl App {
         self.tell_loaded(&name, &found, &details);
         // Two notices, since framing the object dismisses only one of them.
         if !details.is_empty() {
-            self.state.notices.push(Notice { text: said, details, offer: None });
+            self.state.notices.push(Notice::new(NoticeKind::Opened, said).with(details));
         }
         if unseen {
-            let text = format!("{name} is out of view or too small to see");
-            let offer = Some(Offer::Frame(id));
-            self.state.notices.push(Notice { text, details: Vec::new(), offer });
+            let notice = Notice::new(NoticeKind::Unseen, format!("{name}{OUT_OF_VIEW}"));
+            self.state.notices.push(notice.offering(Some(Offer::Frame(id))));
         } else {
-            self.look_for_unseen(ctx, vec![id]);
+            self.look_for_unseen(ctx, [id]);
         }
     }
 
@@ -378,6 +375,7 @@ impl App {
         self.end_measuring();
         self.comparison.forget();
         self.first_steps = None;
+        self.searches = Searches::default();
         let mut old = std::mem::replace(&mut self.state, state);
         // Preferences of the window and lists of files belong to the window, not to the scene. The
         // palette closes itself after the request that replaces the scene.

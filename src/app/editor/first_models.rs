@@ -13,7 +13,7 @@ use super::App;
 use super::turning::usual_up;
 use crate::app::documents::loading::{Arrival, Arrived, Fetched, Wish, is_scene};
 use crate::app::documents::material_dialog::{details, opened, own_or_silver};
-use crate::app::state::{Notice, Offer, State};
+use crate::app::state::{Notice, NoticeKind, Offer, State};
 use crate::app::widgets::text::{file_name, one_or_count};
 use marraztu_core::base::Shared;
 use marraztu_core::edit::{Gesture, Refusal, framing, items, lighting, presenting};
@@ -122,10 +122,11 @@ impl App {
             self.state.tell(Some(format!("Opened {}", object.name)));
             if only.is_some() || !findings.is_empty() {
                 let offer = only.filter(|_| object.model.source.is_some()).map(Offer::Up);
-                self.state.notices.push(Notice { text: said, details: findings, offer });
+                let notice = Notice::new(NoticeKind::Opened, said).with(findings);
+                self.state.notices.push(notice.offering(offer));
             }
         }
-        let ids = self.state.scene.objects.ids().collect();
+        let ids: Vec<_> = self.state.scene.objects.ids().collect();
         self.look_for_unseen(ctx, ids);
     }
 

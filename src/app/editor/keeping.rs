@@ -12,7 +12,7 @@ use egui::Context;
 
 use super::App;
 use crate::app::panels::preferences;
-use crate::app::state::{Notice, State};
+use crate::app::state::{Notice, NoticeKind, State};
 use crate::app::widgets::text::file_name;
 use marraztu_core::scene::Scene;
 use marraztu_io::{
@@ -54,10 +54,10 @@ impl App {
         said: Option<String>,
     ) {
         let changed_keys = self.use_preferences(ctx, &preferences);
-        self.state.notices.extend(said.map(Notice::new));
+        self.state.notices.extend(said.map(|text| Notice::new(NoticeKind::Program, text)));
         if !changed_keys.is_empty() {
             let text = "Some of your custom keys could not be restored.".to_owned();
-            self.state.notices.push(Notice { text, details: changed_keys, offer: None });
+            self.state.notices.push(Notice::new(NoticeKind::Program, text).with(changed_keys));
         }
         // Work of programs that ended without saving is offered, not opened.
         let offered = Abandoned::all(&folders);
@@ -68,7 +68,7 @@ impl App {
             Ok(journal) => Some(journal),
             Err(why) => {
                 let text = format!("Unsaved work cannot be kept for recovery: {why}.");
-                self.state.notices.push(Notice::new(text));
+                self.state.notices.push(Notice::new(NoticeKind::Program, text));
                 None
             }
         };
@@ -106,7 +106,7 @@ impl App {
             }
             if let Some(fault) = journal.fault() {
                 state.notices.retain(|notice| !notice.text.starts_with(NOT_KEPT));
-                state.notices.push(Notice::new(format!("{NOT_KEPT}{fault}.")));
+                state.notices.push(Notice::new(NoticeKind::Program, format!("{NOT_KEPT}{fault}.")));
             }
         }
         let Some(keeping) = &mut self.keeping else { return };

@@ -14,7 +14,7 @@ use super::orders::{Content, Made, Order};
 use crate::app::documents::picture_dialog::{PictureChoices, Purpose};
 use crate::app::documents::wanted::Wanted;
 use crate::app::drawing::images;
-use crate::app::state::{Notice, State};
+use crate::app::state::{Notice, NoticeKind, State};
 use crate::app::tasks::{Outcome, Task};
 use crate::app::widgets::text::file_name;
 use marraztu_io::{self as io, Progress};
@@ -179,7 +179,7 @@ impl App {
                     self.state.tell_saved(&path);
                     if !notes.is_empty() {
                         let text = format!("{} does not hold the whole scene", file_name(&path));
-                        self.state.notices.push(Notice { text, details: notes, offer: None });
+                        self.state.notices.push(Notice::new(NoticeKind::Written, text).with(notes));
                     }
                 }
                 Made::Cancelled => self.state.tell(Some("Cancelled: no file was written".into())),

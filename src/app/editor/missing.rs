@@ -14,8 +14,8 @@ use crate::app::actions::MissingRequest;
 use crate::app::documents::dialogs::Dialog;
 use crate::app::documents::loading::{Fetched, Found};
 use crate::app::documents::wanted::Wanted;
-use crate::app::state::{MissingFiles, Notice};
-use crate::app::widgets::text::{file_name, one_or_count};
+use crate::app::state::{MissingFiles, Notice, NoticeKind};
+use crate::app::widgets::text::{counted, file_name, one_or_count};
 use marraztu_core::base::Shared;
 use marraztu_core::edit::Gesture;
 use marraztu_core::scene::{Camera, Command, Item, Model, Object, Scene, Texture};
@@ -127,8 +127,9 @@ impl App {
         let label = format!("Find {what}");
         self.change(Command::Batch(commands), Gesture::Whole, &label);
         if !details.is_empty() {
-            let text = format!("{label}: {} findings", details.len());
-            self.state.notices.push(Notice { text, details, offer: None });
+            let findings = counted(details.len(), "finding", "findings");
+            let text = format!("{label}: {findings}");
+            self.state.notices.push(Notice::new(NoticeKind::Opened, text).with(details));
         }
         // Files that are still missing may lie near the found ones.
         let nearby = nearby(&self.state.scene.missing_files(), &pairs);

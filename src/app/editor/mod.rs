@@ -6,6 +6,7 @@
 mod clipboard;
 mod comparing;
 mod dialling;
+mod escaping;
 mod explaining;
 mod exposing;
 mod files;
@@ -16,6 +17,7 @@ mod laboratory;
 mod making;
 mod measuring;
 mod missing;
+mod noticing;
 mod orders;
 mod preferences;
 mod reloading;
@@ -47,7 +49,7 @@ use crate::app::fonts;
 use crate::app::input::keyboard::{Keyboard, Press};
 use crate::app::panels::{Panel, arrange, notices, pixel};
 use crate::app::state::layout::NARROW;
-use crate::app::state::{Late, Notice, State};
+use crate::app::state::{Late, Notice, NoticeKind, State};
 use crate::app::theme;
 use crate::app::viewport::comparison::Comparison;
 use crate::app::viewport::{Purpose, Viewport};
@@ -63,7 +65,7 @@ use marraztu_core::scene::{Scene, Steps, View};
 use marraztu_io::{OwnFolders, Preferences, default_scene};
 use measuring::Measuring;
 use reloading::Watch;
-use unseen::Search;
+use unseen::Searches;
 
 /// The preferences, a notice about reading them, and the folders of the program's files.
 pub(crate) type Kept = ((Preferences, Option<String>), OwnFolders);
@@ -74,7 +76,7 @@ pub struct App {
     pub(crate) state: State,
     pub(crate) dialogs: Dialogs,
     pub(crate) loading: Vec<Loading>,
-    pub(crate) searches: Vec<Search>,
+    pub(crate) searches: Searches,
     /// Files being made.
     pub(crate) making: Making,
     /// The comparison by another instance.
@@ -102,6 +104,8 @@ pub struct App {
     pub(crate) measuring: Option<Measuring>,
     /// The pixel being explained.
     pub(crate) explaining: Option<Explaining>,
+    /// The time until which another Esc quits the program.
+    quits_until: Option<f64>,
     /// Whether the window is closing.
     leaving: bool,
     /// Whether the picture is changing.
@@ -130,7 +134,7 @@ impl App {
             state: State::new(scene, view),
             dialogs: Dialogs::default(),
             loading: Vec::new(),
-            searches: Vec::new(),
+            searches: Searches::default(),
             making: Making::default(),
             comparing: Elsewhere::default(),
             queued: VecDeque::new(),
@@ -146,6 +150,7 @@ impl App {
             pressed: Vec::new(),
             measuring: None,
             explaining: None,
+            quits_until: None,
             leaving: false,
             motion: Motion::default(),
             moved_at: None,
@@ -234,6 +239,7 @@ impl App {
                 self.comparison.ui(&ui, rect, &self.state, &mut requests);
             }
         }
+        self.start_searches(&ctx);
         arrangement.over_picture_ui(ui, &self.state, &mut requests);
         if !self.state.picture_only {
             let (state, loading) = (&self.state, &self.loading);
@@ -253,12 +259,7 @@ impl App {
             self.refuse(format!("\"{text}\" is not valid here: the field keeps its value"));
         }
         if let Some(text) = fonts::take_missing(&ctx) {
-            self.state.notices.push(Notice::new(text));
-        }
-        if Keyboard::take_held_escape(&ctx)
-            && !Panel::MOMENTARY.into_iter().any(|panel| self.closes(panel))
-        {
-            self.state.tell(Some(self.next_escape().to_owned()));
+            self.state.notices.push(Notice::new(NoticeKind::Program, text));
         }
         // Keys after a click wait until the click has selected something.
         let waits = clicked || self.viewport.click_wait(now).is_some();
@@ -277,9 +278,11 @@ impl App {
             self.take_answer(&ctx, answer);
         }
         // Then the results of background work arrive, and new work begins.
+        self.end_quitting(&ctx);
         self.end_greeting();
         self.hear_loading(&ctx);
         self.hear_making(&ctx);
+        self.withdraw_notices();
         self.hear_searches();
         self.hear_measuring();
         self.hear_explaining(&ctx);
@@ -424,6 +427,13 @@ impl App {
                 ctx.request_repaint_after(rest);
             }
         }
+    }
+
+    /// Returns whether the picture of the scene is drawn, and nothing moves.
+    fn is_at_rest(&self, ctx: &Context) -> bool {
+        let (now, held) = ctx.input(|input| (input.time, input.pointer.any_down()));
+        let drawing = self.worker.as_ref().is_some_and(Worker::is_drawing);
+        !held && !drawing && self.motion.rest(now).is_none()
     }
 
     fn name_window(&mut self, ctx: &Context) {

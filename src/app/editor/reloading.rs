@@ -1,8 +1,9 @@
 //! Reads models again, on request or when their files have changed.
 //!
-//! If the user enables it, a thread checks the files twice a second and wakes the window if one has
-//! changed. A file is read after it has stayed the same from one check to the next, since other
-//! programs write files in pieces.
+//! A thread checks the files twice a second and wakes the window if one has changed. A file counts
+//! as changed after it has stayed the same from one check to the next, since other programs write
+//! files in pieces. It is read again at once if the user has enabled that; otherwise a notice
+//! offers it.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -14,7 +15,7 @@ use egui::Context;
 use super::App;
 use super::missing::Replacements;
 use crate::app::documents::loading::{Fetched, Reread};
-use crate::app::state::Notice;
+use crate::app::state::{Notice, NoticeKind, Offer};
 use crate::app::widgets::text::{file_name, one_or_count};
 use marraztu_core::base::Shared;
 use marraztu_core::edit::Gesture;
@@ -32,6 +33,9 @@ impl App {
         for (path, model) in models(&self.state.scene) {
             let file = (path.clone(), model.options);
             let is_meant = only.is_none_or(|only| files(path, model).any(|it| only.contains(it)));
+            if is_meant && let Some(watch) = &self.watch {
+                watch.note_read(files(path, model));
+            }
             if is_meant && !wanted.contains(&file) {
                 wanted.push(file);
             }
@@ -67,10 +71,14 @@ impl App {
                 Err(LoadError::Cancelled) => None,
                 Err(error) => {
                     let text = format!("{error}. The model is unchanged.");
-                    self.state.notices.push(Notice::new(text));
+                    self.state.notices.push(Notice::new(NoticeKind::Opened, text));
                     None
                 }
             };
+            if model.is_some() {
+                let reload = Some(Offer::Reload(path.clone()));
+                self.state.notices.retain(|notice| notice.offer != reload);
+            }
             read.push((path, options, model));
         }
         // The models to replace are those of now: the user, or another reload, may have replaced
@@ -99,18 +107,41 @@ impl App {
         }
     }
 
-    /// Starts or stops watching files, and reads changed files again.
+    /// Watches the files of models. Changed files are read again if the user wants that; otherwise
+    /// a notice offers it.
     pub(crate) fn watch_files(&mut self, ctx: &Context) {
-        if !self.state.watches {
-            self.watch = None;
+        if self.watch.is_none() && models(&self.state.scene).next().is_none() {
             return;
         }
         let watch = self.watch.get_or_insert_with(|| Watch::begin(ctx));
         watch.look_at(&self.state.scene);
         let changed = watch.take_changed();
         if !changed.is_empty() {
-            self.reload_models(ctx, Some(&changed));
+            self.tell_changed(&changed);
         }
+        if self.state.watches {
+            self.accept(ctx, NoticeKind::Changed);
+        }
+    }
+
+    /// Adds a notice for each model that has changed on disk, or that uses a changed file.
+    fn tell_changed(&mut self, changed: &BTreeSet<PathBuf>) {
+        let mut new = Vec::new();
+        for (path, model) in models(&self.state.scene) {
+            let Some(file) = files(path, model).find(|file| changed.contains(*file)) else {
+                continue;
+            };
+            let notice = Notice::new(
+                NoticeKind::Changed,
+                format!("{} has changed on disk", file_name(file)),
+            )
+            .offering(Some(Offer::Reload(path.clone())));
+            let is_told = |other: &Notice| other.offer == notice.offer;
+            if !self.state.notices.iter().chain(&new).any(is_told) {
+                new.push(notice);
+            }
+        }
+        self.state.notices.extend(new);
     }
 }
 
@@ -175,6 +206,17 @@ impl Watch {
         }
         drop(files);
         self.of = Some(scene.clone());
+    }
+
+    /// Records that files are read now: a change up to now is not reported.
+    fn note_read<'a>(&self, paths: impl Iterator<Item = &'a PathBuf>) {
+        let mut files = lock(&self.files);
+        for path in paths {
+            files.changed.remove(path);
+            if let Some(seen) = files.seen.get_mut(path) {
+                *seen = [stamp(path); 2];
+            }
+        }
     }
 
     fn take_changed(&self) -> BTreeSet<PathBuf> {

@@ -5,18 +5,16 @@
 
 use std::path::{Path, PathBuf};
 
-use egui::{Context, Key};
+use egui::Context;
 use glam::DVec3;
 
 use super::App;
-use crate::app::actions::{
-    Action, Chord, FileIntent, Intent, KeyRequest, LabRequest, Request, resolve,
-};
+use crate::app::actions::{Action, FileIntent, Intent, KeyRequest, Request, resolve};
 use crate::app::documents::dialogs::Dialog;
 use crate::app::documents::material_dialog::MaterialDialog;
 use crate::app::documents::picture_dialog::{PictureChoices, Purpose};
 use crate::app::documents::wanted::{After, Wanted};
-use crate::app::input::keyboard::{Keyboard, Press};
+use crate::app::input::keyboard::Keyboard;
 use crate::app::input::keymap::Keymap;
 use crate::app::panels::Panel;
 use crate::app::state::{Message, Offer, State, Tone};
@@ -40,68 +38,7 @@ impl App {
             ctx.request_repaint();
         }
         for press in std::mem::take(&mut self.pressed) {
-            self.press(ctx, press);
-        }
-    }
-
-    /// Performs the action of a key. Esc first closes whatever is open.
-    pub(crate) fn press(&mut self, ctx: &Context, press: Press) {
-        if press.chord == Chord::Named(Key::Escape) && self.ends_something(ctx) {
-            // If the next key is also Esc, it does not quit the program yet.
-            return Keyboard::note_escape(ctx);
-        }
-        self.perform(ctx, press.action, press.gesture);
-    }
-
-    /// Ends the innermost mode that Esc ends before it quits. Returns whether there was one.
-    fn ends_something(&mut self, ctx: &Context) -> bool {
-        let mut requests = Vec::new();
-        if self.viewport.cancel_drag(&mut requests) {
-            requests.into_iter().for_each(|request| self.answer(ctx, request));
-            return true;
-        }
-        if std::mem::take(&mut self.state.aiming)
-            || std::mem::take(&mut self.state.explaining)
-            || std::mem::take(&mut self.state.loupe)
-            || std::mem::take(&mut self.state.lab.picking)
-            || Panel::MOMENTARY.into_iter().any(|panel| self.closes(panel))
-            || self.state.renaming.take().is_some()
-        {
-            return true;
-        }
-        if self.state.explained.take().is_some() {
-            self.explaining = None;
-            return true;
-        }
-        if !self.state.others().is_empty() {
-            self.state.several = Others::default();
-            return true;
-        }
-        // Files keep this window open, so it closes after the modes.
-        if self.closes(Panel::History) {
-            return true;
-        }
-        if self.state.lab.away {
-            self.back_to_scene();
-            return true;
-        }
-        if self.state.lab.running.is_some() {
-            self.answer_lab(ctx, LabRequest::Cancel);
-            return true;
-        }
-        false
-    }
-
-    /// Describes the next Esc's effect, with all dialogs closed.
-    pub(super) fn next_escape(&self) -> &'static str {
-        if self.state.panels.has(Panel::History) {
-            "Press Esc again to close the history"
-        } else if self.state.lab.away {
-            "Press Esc again to go back to your scene"
-        } else if self.state.lab.running.is_some() {
-            "Press Esc again to cancel measuring"
-        } else {
-            "Press Esc again to quit"
+            self.perform(ctx, press.action, press.gesture);
         }
     }
 
@@ -147,27 +84,17 @@ impl App {
             Request::LoadFiles(paths) => self.load_files(ctx, paths),
             Request::OpenFiles(paths) => self.open_files(ctx, paths),
             Request::AskModels => self.ask_file(ctx, Wanted::Dropped, ""),
-            // Notices. An earlier request of the frame may have removed some: indices are checked.
-            Request::Details(at) => {
-                if let Some(notice) = state.notices.get(at) {
-                    let (text, details) = (notice.text.clone(), notice.details.clone());
-                    self.dialogs.show(Dialog::Details(text, details));
-                }
-            }
-            Request::PutAway(at) => {
-                if at < state.notices.len() {
-                    state.notices.remove(at);
-                }
-            }
-            Request::Settle(at) => {
-                if at < state.notices.len() {
-                    let notice = state.notices.remove(at);
-                    state.past_notices.retain(|other| *other != notice);
-                    state.past_notices.push(notice);
-                }
+            // Notices.
+            Request::Accept(kind) => self.accept(ctx, kind),
+            Request::Details(kind) => self.show_details(kind),
+            Request::PutAway(kind) => state.notices.retain(|notice| notice.kind != kind),
+            Request::Settle(kind) => state.settle_notices(|notice| notice.kind == kind),
+            Request::DismissNotices => {
+                self.dismiss_notices();
             }
             Request::ClearNotices => state.past_notices.clear(),
             Request::TurnUp(ids, up) => self.turn_up(ctx, &ids, up),
+            Request::UpByDefault(up) => state.up = up,
             // Background work.
             Request::CancelLoading(at) => {
                 if let Some(loading) = self.loading.get(at) {
@@ -200,6 +127,9 @@ impl App {
         }
         // The action is resolved against the scene as it is now, which also decides its
         // availability.
+        if action != Action::Escape {
+            self.quits_until = None;
+        }
         let resolved = resolve(action, &self.state, self.state.phase(gesture));
         // The lights that are on are remembered, to restore them when the user ends the solo.
         if action == Action::SoloLight && action.is_on(&self.state) == Some(false) {
@@ -242,6 +172,7 @@ impl App {
             Ok(Intent::Loupe) => self.toggle_loupe(ctx),
             Ok(Intent::TypeAmount) => self.type_amount(ctx),
             Ok(Intent::ChangeKeyboardOwner(way)) => Keyboard::change_owner(ctx, way),
+            Ok(Intent::Escape) => self.escape(ctx),
         }
     }
 
@@ -261,7 +192,7 @@ impl App {
         }
     }
 
-    fn file(&mut self, ctx: &Context, intent: FileIntent) {
+    pub(super) fn file(&mut self, ctx: &Context, intent: FileIntent) {
         match intent {
             FileIntent::New => self.unless_unsaved(ctx, After::New),
             FileIntent::Open => self.unless_unsaved(ctx, After::Open(None)),

@@ -11,7 +11,7 @@ use crate::app::documents::dialogs::Dialog;
 use crate::app::documents::loading::{Fetched, Opening};
 use crate::app::documents::material_dialog::{details, short};
 use crate::app::documents::wanted::{After, ChangedFile, Wanted};
-use crate::app::state::{Notice, State};
+use crate::app::state::{Notice, NoticeKind, State};
 use crate::app::widgets::text::file_name;
 use marraztu_core::edit::selection;
 use marraztu_io::{
@@ -139,7 +139,7 @@ impl App {
                 None => format!("Opened {name}"),
             };
             let details = details(&others);
-            state.notices.push(Notice { text, details, offer: None });
+            state.notices.push(Notice::new(NoticeKind::Opened, text).with(details));
         }
         // An example has no path, so saving it asks for a name.
         if !io::is_example(path) {
@@ -150,7 +150,7 @@ impl App {
         if !self.settle_recovered(path) {
             self.note_recent(path);
         }
-        let objects = self.state.scene.objects.ids().collect();
+        let objects: Vec<_> = self.state.scene.objects.ids().collect();
         self.look_for_unseen(ctx, objects);
     }
 }

@@ -6,6 +6,7 @@ use egui::Context;
 
 use super::App;
 use crate::app::actions::Also;
+use crate::app::input::keyboard::Keyboard;
 use marraztu_core::edit::Gesture;
 use marraztu_core::edit::selection;
 use marraztu_core::edit::several::Others;
@@ -72,6 +73,7 @@ impl App {
         self.state.message = None;
         if self.viewport.type_amount(&self.state) {
             self.viewport.take_keyboard(ctx);
+            Keyboard::begin_typing(ctx);
         } else {
             self.refuse("the viewport has not been drawn yet".to_owned());
         }

@@ -1,5 +1,6 @@
 //! The up axis of a model's file: the axis that the file states or that is usual for its format, or
-//! else the user's last choice. An opened model is turned by reading it again.
+//! else the preferred one. An opened model is turned by reading it again, which changes no other
+//! model.
 
 use std::path::{Path, PathBuf};
 
@@ -15,15 +16,15 @@ use marraztu_core::scene::{Command, LoadOptions, Model, ObjectId, UpAxis};
 use marraztu_io::{self as io, is_example};
 
 /// Returns the up axis for opening a model, and a sentence if it is not Y. It is the axis that the
-/// file states or that is usual for its format, or else the last choice.
-pub(super) fn usual_up(path: &Path, last: UpAxis) -> (UpAxis, Option<String>) {
+/// file states or that is usual for its format, or else the preferred one.
+pub(super) fn usual_up(path: &Path, preferred: UpAxis) -> (UpAxis, Option<String>) {
     if is_example(path) {
         return (UpAxis::Y, None);
     }
     let stated = io::stated_up(path);
     let (up, why) = match (stated, io::usual_up(path)) {
         (Some(stated), _) => (stated.up, format!(": its file says \"{}\"", stated.comment)),
-        (None, UpAxis::Y) => (last, ", as you chose last".to_owned()),
+        (None, UpAxis::Y) => (preferred, ", as you prefer".to_owned()),
         (None, usual) => (usual, ", as usual in STL files".to_owned()),
     };
     let letter = up.word().to_uppercase();
@@ -50,7 +51,6 @@ impl App {
         if files.is_empty() {
             return self.refuse(format!("{} was not loaded from a file", first.name));
         }
-        self.state.up = up;
         let what = one_or_count(&files, "models", |(path, ..)| file_name(path));
         self.begin_loading(ctx, format!("Turning {what}"), false, move |progress| {
             let read = |(path, options, ids): (PathBuf, LoadOptions, Vec<ObjectId>)| {

@@ -2,11 +2,14 @@
 //!
 //! The search runs on a background thread and draws separate pictures, so the window does not wait.
 
+use std::collections::BTreeSet;
+
 use egui::Context;
 
 use super::App;
-use crate::app::state::{Notice, Offer, State};
+use crate::app::state::{Notice, NoticeKind, OUT_OF_VIEW, Offer, State};
 use crate::app::tasks::{Outcome, Task};
+use marraztu_core::accuracy::{Samples, Shot};
 use marraztu_core::base::image::Size;
 use marraztu_core::scene::{ItemId, Object, ObjectId, Projection};
 use marraztu_render::plan_frame;
@@ -16,8 +19,19 @@ use marraztu_render::{Renderer, Unseen, unseen};
 #[derive(Debug)]
 pub(crate) struct Search {
     task: Task<Vec<(ObjectId, Unseen)>>,
+    ids: BTreeSet<ObjectId>,
     /// The object that the user asked about. If it is visible, that is reported too.
     asked: Option<ObjectId>,
+}
+
+/// The searches for objects that are not visible.
+#[derive(Debug, Default)]
+pub(crate) struct Searches {
+    running: Vec<Search>,
+    /// Searches that wait for the next frame, when the size of the picture is known.
+    waiting: Vec<(BTreeSet<ObjectId>, Option<ObjectId>)>,
+    /// The picture of the last search.
+    last: Option<Shot>,
 }
 
 /// The size of the picture before the window has one.
@@ -26,47 +40,82 @@ const SIZE: Size = Size::new(800, 600);
 impl App {
     /// Starts to search for objects among these that are not visible in the current scene. Objects
     /// without faces are skipped, since their files already have a finding about it.
-    pub(crate) fn look_for_unseen(&mut self, ctx: &Context, mut ids: Vec<ObjectId>) {
+    pub(crate) fn look_for_unseen(
+        &mut self,
+        ctx: &Context,
+        ids: impl IntoIterator<Item = ObjectId>,
+    ) {
+        let objects = &self.state.scene.objects;
         let has_faces = |object: &Object| object.model.mesh.polygon_count() > 0;
-        ids.retain(|id| self.state.scene.objects.get(*id).is_some_and(has_faces));
-        self.search(ctx, ids, None);
+        let ids = ids.into_iter().filter(|id| objects.get(*id).is_some_and(has_faces));
+        self.searches.waiting.push((ids.collect(), None));
+        ctx.request_repaint();
     }
 
     /// Reports why an object is not visible, or that it is.
     pub(crate) fn why_unseen(&mut self, ctx: &Context, id: ObjectId) {
         let Some(object) = self.state.scene.objects.get(id) else { return };
         if object.visible {
-            return self.search(ctx, vec![id], Some(id));
+            self.searches.waiting.push(([id].into(), Some(id)));
+            return ctx.request_repaint();
         }
-        let (text, offer) = (format!("{} is hidden", object.name), Some(Offer::Show(id)));
-        let notice = Notice { text, details: Vec::new(), offer };
+        let notice = Notice::new(NoticeKind::Hidden, format!("{} is hidden", object.name));
+        let notice = notice.offering(Some(Offer::Show(id)));
         if !self.state.notices.contains(&notice) {
             self.state.notices.push(notice);
         }
     }
 
-    fn search(&mut self, ctx: &Context, ids: Vec<ObjectId>, asked: Option<ObjectId>) {
-        let shot = self.state.shot(self.viewport.size().unwrap_or(SIZE));
-        let search = Task::start(ctx, "looking for objects".to_owned(), move |_| {
-            let plan = plan_frame(&shot);
-            let mut renderer = Renderer::default();
-            renderer.render(&plan);
-            let mut all = unseen(&mut renderer, &shot);
-            all.retain(|(id, _)| ids.contains(id));
-            all
-        });
-        // Without a thread there is no notice, but nothing is lost.
-        self.searches.extend(search.map(|task| Search { task, asked }));
+    /// Starts the searches that wait. If the view has changed since the last search and rests,
+    /// objects with a notice are searched for again.
+    pub(crate) fn start_searches(&mut self, ctx: &Context) {
+        let mut waiting = std::mem::take(&mut self.searches.waiting);
+        let again = self.reported();
+        if waiting.is_empty() && again.is_empty() {
+            return;
+        }
+        let mut shot = self.state.shot(self.viewport.size().unwrap_or(SIZE));
+        // As many samples as the finest picture has next to the centre of a pixel: what it shows
+        // is not reported.
+        if shot.settings.samples == Samples::One && self.state.refined_to().is_some() {
+            shot.settings.samples = Samples::Four;
+        }
+        let rests = self.searches.running.is_empty() && self.is_at_rest(ctx);
+        if waiting.is_empty() && rests && self.searches.last.as_ref() != Some(&shot) {
+            waiting.push((again, None));
+        }
+        for (ids, asked) in waiting {
+            self.searches.last = Some(shot.clone());
+            let (of, theirs) = (shot.clone(), ids.clone());
+            let task = Task::start(ctx, "looking for objects".to_owned(), move |_| {
+                let plan = plan_frame(&of);
+                let mut renderer = Renderer::default();
+                renderer.render(&plan);
+                let mut all = unseen(&mut renderer, &of);
+                all.retain(|(id, _)| theirs.contains(id));
+                all
+            });
+            // Without a thread there is no notice, but nothing is lost.
+            self.searches.running.extend(task.map(|task| Search { task, ids, asked }));
+        }
     }
 
-    /// Adds notices about the objects found.
+    /// Lists the objects that notices report as not visible.
+    fn reported(&self) -> BTreeSet<ObjectId> {
+        let notices = self.state.notices.iter().filter(|notice| is_about_sight(notice));
+        notices.filter_map(|notice| notice.offer.as_ref()?.object()).collect()
+    }
+
+    /// Adds notices about the objects found, and removes those about objects that are visible now.
     pub(crate) fn hear_searches(&mut self) {
         let (mut found, mut seen) = (Vec::new(), None);
-        self.searches.retain(|search| match search.task.outcome() {
+        let mut searched = BTreeSet::new();
+        self.searches.running.retain(|search| match search.task.outcome() {
             Outcome::Running => true,
             Outcome::Done(all) => {
                 seen = search.asked.filter(|id| all.iter().all(|(other, _)| other != id));
                 found.extend(all);
+                searched.extend(search.ids.iter().copied());
                 false
             }
             Outcome::Lost => false,
@@ -75,33 +124,51 @@ impl App {
             let text = format!("{name} is in the picture: nothing hides all of it");
             self.state.tell(Some(text));
         }
-        let notices = found.into_iter().filter_map(|(id, why)| notice(&self.state, id, &why));
-        let notices: Vec<Notice> = notices.collect();
-        self.state.notices.extend(notices);
+        if searched.is_empty() {
+            return;
+        }
+        let size = self.viewport.size().unwrap_or(SIZE);
+        let new = found.iter().filter_map(|(id, why)| notice(&self.state, (*id, size), why));
+        let new: Vec<Notice> = new.collect();
+        // A tiny object is still reported if it covers a pixel.
+        let mut notices = std::mem::take(&mut self.state.notices);
+        notices.retain(|notice| {
+            let id = notice.offer.as_ref().and_then(Offer::object);
+            let id = id.filter(|id| is_about_sight(notice) && searched.contains(id));
+            let object = id.and_then(|id| self.state.scene.objects.get(id));
+            let is_found = found.iter().any(|(other, _)| Some(*other) == id);
+            object.is_none_or(|object| !is_found && out_of_sight(&self.state, object, size))
+        });
+        notices.extend(new);
+        self.state.notices = notices;
     }
 }
 
-/// Creates the notice about an object; `None` if the object is gone or was reported before.
-fn notice(state: &State, id: ObjectId, why: &Unseen) -> Option<Notice> {
+/// Returns whether a notice is about an object that is not visible in a view.
+const fn is_about_sight(notice: &Notice) -> bool {
+    matches!(notice.kind, NoticeKind::Unseen | NoticeKind::TurnedAway | NoticeKind::Transparent)
+}
+
+/// Creates the notice about an object; `None` if the object is gone.
+fn notice(state: &State, (id, size): (ObjectId, Size), why: &Unseen) -> Option<Notice> {
     let object = state.scene.objects.get(id)?;
     let name = &object.name;
-    let offer = match why {
-        Unseen::TurnedAway { .. } => Some(Offer::TwoSides(id)),
-        Unseen::Covered { .. } | Unseen::BetweenPixels => Some(Offer::Frame(id)),
-        Unseen::Transparent => Some(Offer::Opaque(id)),
+    let (kind, offer) = match why {
+        Unseen::TurnedAway { .. } => (NoticeKind::TurnedAway, Offer::TwoSides(id)),
+        Unseen::Transparent => (NoticeKind::Transparent, Offer::Opaque(id)),
         // The plan leaves out surfaces outside of the view.
-        Unseen::LeftOut(_) | Unseen::Unexamined => {
-            (object.model.mesh.polygon_count() > 0).then_some(Offer::Frame(id))
-        }
+        Unseen::Covered { .. }
+        | Unseen::BetweenPixels
+        | Unseen::LeftOut(_)
+        | Unseen::Unexamined => (NoticeKind::Unseen, Offer::Frame(id)),
     };
-    let turned_away = matches!(why, Unseen::TurnedAway { .. });
-    let (text, offer) = if !turned_away && out_of_sight(state, object, SIZE) {
-        (format!("{name} is out of view or too small to see"), Some(Offer::Frame(id)))
-    } else {
-        (format!("Nothing of {name} is visible: {why}"), offer)
-    };
-    let told = state.notices.iter().any(|notice| offer.is_some() && notice.offer == offer);
-    (!told).then(|| Notice { text, details: Vec::new(), offer })
+    let has_faces = object.model.mesh.polygon_count() > 0;
+    if kind != NoticeKind::TurnedAway && out_of_sight(state, object, size) {
+        let notice = Notice::new(NoticeKind::Unseen, format!("{name}{OUT_OF_VIEW}"));
+        return Some(notice.offering(Some(Offer::Frame(id))));
+    }
+    let notice = Notice::new(kind, format!("Nothing of {name} is visible: {why}"));
+    Some(notice.offering(Some(offer).filter(|_| has_faces)))
 }
 
 /// Returns whether an object would be outside of the picture or too small to notice.
@@ -139,7 +206,8 @@ mod tests {
         let (scene, view) = io::default_scene();
         let id = scene.objects.ids().next().unwrap();
         let state = State::new(scene, view);
-        let notice = notice(&state, id, &Unseen::LeftOut("outside the view".into())).unwrap();
+        let notice =
+            notice(&state, (id, SIZE), &Unseen::LeftOut("outside the view".into())).unwrap();
         assert_eq!(notice.offer, Some(Offer::Frame(id)));
     }
 

@@ -5,7 +5,7 @@
 //! While text is edited, a menu is open, or a control of a panel has the focus, these keys are left
 //! to egui.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use egui::{Context, Event, Id, Key, Modifiers, RawInput, ViewportCommand};
@@ -21,8 +21,6 @@ use marraztu_core::edit::Gesture;
 pub(crate) struct Press {
     /// The action.
     pub(crate) action: Action,
-    /// The key.
-    pub(crate) chord: Chord,
     /// The gesture. It lasts from the press of a key to its release.
     pub(crate) gesture: Gesture,
 }
@@ -35,7 +33,11 @@ pub(crate) struct Keyboard {
     letters: Letters,
     /// The text typed in mode [`Letters::Type`], with Enter as a line feed and Backspace as itself.
     typed: String,
-    down: BTreeSet<Key>,
+    /// Whether the last text was typed for a handle and not followed by Enter. If the release of
+    /// the mouse has ended the amount, Enter confirms what is already done.
+    unconfirmed: bool,
+    /// The keys that are down, with what each of them was pressed for.
+    down: BTreeMap<Key, Use>,
     /// The key of the last event of the clipboard, until some key is released: which key stood for
     /// it is unknown, as layouts differ and Shift+Insert pastes on Windows.
     clipboard_down: Option<Key>,
@@ -45,10 +47,6 @@ pub(crate) struct Keyboard {
     last_was_repeat: bool,
     presses: u64,
     waiting: Vec<Press>,
-    /// Whether the last press was Esc, and closed or left something.
-    left_by_escape: bool,
-    /// Whether an Esc was held back since the last query.
-    held_escape: bool,
     keymap: Arc<Keymap>,
     pasted: Option<String>,
     /// Whether the text of the clipboard was requested from the window.
@@ -70,6 +68,11 @@ impl Keyboard {
         (keyboard.viewport, keyboard.letters) = (Some(viewport), letters);
         drop(keyboard);
         regions::go_further(ctx, viewport);
+    }
+
+    /// Lets the next keys form an amount, even those that arrive before the next frame.
+    pub(crate) fn begin_typing(ctx: &Context) {
+        ctx.plugin_or_default::<Self>().lock().letters = Letters::Type;
     }
 
     /// Takes the text typed for a handle since the last call.
@@ -113,17 +116,6 @@ impl Keyboard {
         ctx.send_viewport_cmd(ViewportCommand::RequestPaste);
     }
 
-    /// Returns whether an Esc was held back because it followed an Esc that closed or left
-    /// something. A double press there is not meant to quit the program.
-    pub(crate) fn take_held_escape(ctx: &Context) -> bool {
-        std::mem::take(&mut ctx.plugin_or_default::<Self>().lock().held_escape)
-    }
-
-    /// Records that an Esc closed something.
-    pub(crate) fn note_escape(ctx: &Context) {
-        ctx.plugin_or_default::<Self>().lock().left_by_escape = true;
-    }
-
     /// Moves the focus to the next or previous region; after the last or before the first, to the
     /// viewport.
     pub(crate) fn change_owner(ctx: &Context, way: Way) {
@@ -151,19 +143,15 @@ impl Keyboard {
     /// Handles a key press. Returns whether the viewport keeps the key from egui.
     fn key(&mut self, owner: Owner, key: Key, modifiers: Modifiers, repeat: bool) -> bool {
         self.last_was_repeat = repeat;
-        let left_by_escape = std::mem::take(&mut self.left_by_escape);
-        if key == Key::Escape {
-            // The second of two presses of Esc is held back; see `take_held_escape`.
-            self.left_by_escape = owner != Owner::Viewport;
-            if left_by_escape && owner == Owner::Viewport {
-                self.held_escape = true;
-                return true;
-            }
-        }
         // Typed amounts use Enter and Backspace, which trigger no action then.
         let types = self.letters == Letters::Type && owner == Owner::Viewport;
         if types && matches!(key, Key::Enter | Key::Backspace) {
             self.typed.push(if key == Key::Enter { '\n' } else { '\u{8}' });
+            self.unconfirmed = key != Key::Enter;
+            return true;
+        }
+        let ends = !types || key == Key::Escape;
+        if ends && std::mem::take(&mut self.unconfirmed) && key == Key::Enter {
             return true;
         }
         let chord = |chord: &Chord| chord.is_pressed_by(key, modifiers);
@@ -188,8 +176,7 @@ impl Keyboard {
             self.pasted = Some(text.clone()).filter(|_| acts);
             if std::mem::take(&mut self.asks_paste) && acts {
                 // The paste was requested by the action, whatever its key.
-                let (action, chord) = (Action::Paste, Chord::Command(key));
-                self.waiting.push(Press { action, chord, gesture: Gesture::Whole });
+                self.waiting.push(Press { action: Action::Paste, gesture: Gesture::Whole });
                 return;
             }
         }
@@ -222,7 +209,7 @@ impl Keyboard {
             true => gestures::numbered(self.presses, "key"),
             false => Gesture::Whole,
         };
-        self.waiting.push(Press { action, chord, gesture });
+        self.waiting.push(Press { action, gesture });
     }
 }
 
@@ -246,6 +233,9 @@ pub(crate) enum Letters {
     /// They form an amount for a handle.
     Type,
 }
+
+/// Who gets a key, and what letters are for.
+type Use = (Owner, Letters);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Owner {
@@ -280,8 +270,17 @@ impl egui::Plugin for Keyboard {
         // The viewport's keys are removed from the events, so egui never sees them.
         input.events.retain(|event| match event {
             Event::Key { key, physical_key, pressed: true, modifiers, repeat } => {
-                let held = !self.down.insert(physical_key.unwrap_or(*key));
-                !self.key(owner, *key, *modifiers, *repeat || held)
+                let now = (owner, self.letters);
+                let held = self.down.insert(physical_key.unwrap_or(*key), now);
+                // A held key that has ended its field or its amount does not act in the viewport.
+                let moved =
+                    |before: &Use| *before != now && [before.0, owner].contains(&Owner::Viewport);
+                if let Some(before) = held.filter(moved) {
+                    self.down.insert(physical_key.unwrap_or(*key), before);
+                    self.last_was_repeat = true;
+                    return false;
+                }
+                !self.key(owner, *key, *modifiers, *repeat || held.is_some())
             }
             Event::Key { key, physical_key, pressed: false, .. } => {
                 self.down.remove(&physical_key.unwrap_or(*key));
@@ -291,6 +290,7 @@ impl egui::Plugin for Keyboard {
             Event::Text(text) => {
                 if self.letters == Letters::Type && owner == Owner::Viewport {
                     self.typed.push_str(text);
+                    self.unconfirmed = true;
                 } else if !self.alt {
                     self.ask(owner, |chord| matches!(chord, Chord::Text(sign) if sign == text));
                 }
@@ -310,7 +310,7 @@ impl egui::Plugin for Keyboard {
                 true
             }
             Event::PointerButton { pressed: true, .. } => {
-                self.left_by_escape = false;
+                self.unconfirmed = false;
                 gestures::count_press(ctx);
                 true
             }

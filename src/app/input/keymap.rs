@@ -86,8 +86,12 @@ impl Keymap {
             for key in unknown.into_iter().filter_map(Result::err) {
                 said.push(format!("{key:?} cannot be a key of \"{}\".", action.info().label));
             }
+            // Older versions had Esc among the keys that quit; it has another action now.
+            let is_free =
+                |key: &Chord| action == Action::Escape || *key != Chord::Named(Key::Escape);
+            let known: Vec<Chord> = known.into_iter().flatten().filter(is_free).collect();
             if keys.is_empty() || !known.is_empty() {
-                keymap.choose(action, known.into_iter().flatten().collect());
+                keymap.choose(action, known);
             }
         }
         keymap.settle(&mut said);
@@ -222,6 +226,16 @@ mod tests {
             let (keymap, said) = read(&[(name, "j")]);
             assert_eq!(keymap.keys(Action::Panel(panel)), [Chord::Lower(Key::J)], "{name}");
             assert!(said.is_empty(), "{said:?}");
+        }
+    }
+
+    #[test]
+    fn esc_cancels_even_if_it_quit_in_an_older_version() {
+        for (keys, quits) in [("Esc w", Chord::Lower(Key::W)), ("Esc", Chord::Command(Key::Q))] {
+            let (keymap, said) = read(&[("Quit", keys)]);
+            assert_eq!(keymap.keys(Action::Quit), [quits]);
+            assert_eq!(keymap.keys(Action::Escape), [Chord::Named(Key::Escape)]);
+            assert!(!said.iter().any(|said| said.contains("Esc")), "{said:?}");
         }
     }
 

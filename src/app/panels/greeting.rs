@@ -33,9 +33,14 @@ const LEAST_FOR_THUMBNAILS: Vec2 = vec2(640.0, 500.0);
 /// The size of a thumbnail in points: half of its pixels.
 const THUMBNAIL: Vec2 = vec2(144.0, 90.0);
 
-pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Requests) {
+/// Returns whether the greeting is shown over this picture.
+pub(super) fn is_shown(state: &State, picture: Rect) -> bool {
     let is_small = picture.size().min_elem() < LEAST_SIDE || picture.area() < LEAST_AREA;
-    if !state.greeting || !state.overlays || is_small {
+    state.greeting && state.overlays && !is_small
+}
+
+pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Requests) {
+    if !is_shown(state, picture) {
         return;
     }
     let area = Area::new(Id::unique("greeting")).order(Order::Middle).constrain_to(picture);

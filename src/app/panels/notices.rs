@@ -1,28 +1,39 @@
-//! Notices over the picture: files being loaded, and findings about them. Notices that need no
-//! answer move to the status line after some seconds.
+//! Notices over the picture: files being loaded, and findings about them, one notice for each kind.
+//! Notices that need no answer move to the status line after some seconds.
 
 use std::time::Duration;
 
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use egui::{Align2, Area, Context, Frame, Id, Order, Rect, Ui, vec2};
+use egui::{Align2, Area, Context, Frame, Id, Order, Rect, ScrollArea, Ui};
 
+use super::greeting;
+use super::properties::up_by_default_ui;
 use crate::app::actions::{Action, MissingRequest, Request, Requests};
 use crate::app::documents::loading::Loading;
 use crate::app::input::buttons::first_key;
-use crate::app::state::{Notice, Offer, State};
+use crate::app::state::{NoticeGroup, NoticeKind, Offer, State};
 use crate::app::tasks::Task;
 use crate::app::theme;
 use crate::app::widgets::regions;
 use crate::app::widgets::text::file_name;
-use marraztu_core::edit::Gesture;
 use marraztu_core::scene::{ObjectId, UpAxis};
 
 /// The time, in seconds, for which a notice without a question is shown.
 const SHOWN: f64 = 8.0;
 
-/// Shows the notices at the top of the picture; their requests are added to `requests`.
+/// The greatest width of a notice.
+const WIDTH: f32 = 340.0;
+
+/// The height of the text at the lower edge of the picture, below the notices.
+const PLATE: f32 = 36.0;
+
+/// The height of the axes of the world in the upper right corner.
+const AXES: f32 = 92.0;
+
+/// Shows the notices in the lower right corner of the picture; their requests are added to
+/// `requests`. No other overlay lies there, and nothing is covered.
 pub(crate) fn show<T>(
     (ctx, picture): (&Context, Rect),
     state: &State,
@@ -34,52 +45,77 @@ pub(crate) fn show<T>(
         true => BTreeSet::new(),
         false => state.scene.missing_files(),
     };
-    if loading.is_empty()
-        && making.is_empty()
-        && state.notices.is_empty()
-        && state.recoverable.is_empty()
-        && state.missing.nearby.is_empty()
-        && missing.is_empty()
-    {
+    let groups = NoticeGroup::of(&state.notices);
+    let dismissible = groups.len()
+        + usize::from(!missing.is_empty())
+        + usize::from(!state.missing.nearby.is_empty());
+    let is_empty = loading.is_empty() && making.is_empty() && state.recoverable.is_empty();
+    if is_empty && dismissible == 0 {
         return;
     }
+    let width = WIDTH.min(picture.width() - 32.0).max(160.0);
+    let place = place(ctx, picture, width, state);
     let corner = Area::new(Id::unique("notices"))
         .order(Order::Middle)
-        .pivot(Align2::CENTER_TOP)
-        .fixed_pos(picture.center_top() + vec2(0.0, 14.0));
+        .pivot(Align2::RIGHT_BOTTOM)
+        .fixed_pos(place.right_bottom());
     corner.show(ctx, |ui| {
-        ui.set_max_width(420.0_f32.min(picture.width() - 16.0).max(200.0));
-        // Notices overlap other regions, so their region is limited to the controls among them.
-        let column = Rect::from_min_size(ui.cursor().min, ui.available_size());
-        let seen: Option<Rect> = ui.data(|data| data.get_temp(seen_id()));
-        regions::begin_in(ui, "notices", seen.unwrap_or(column));
-        // Tasks in progress come first, then offers, then findings.
-        for (at, loading) in loading.iter().enumerate() {
-            let cancel = Request::CancelLoading(at);
-            Frame::popup(ui.style()).show(ui, |ui| task_ui(ui, &loading.task, cancel, requests));
-        }
-        for (at, task) in making.iter().enumerate() {
-            let cancel = Request::CancelMaking(at);
-            Frame::popup(ui.style()).show(ui, |ui| task_ui(ui, task, cancel, requests));
-        }
-        for (at, work) in state.recoverable.iter().enumerate() {
-            Frame::popup(ui.style()).show(ui, |ui| recoverable_ui(ui, at, work, requests));
-        }
-        if !state.missing.nearby.is_empty() {
-            Frame::popup(ui.style()).show(ui, |ui| nearby_ui(ui, state, requests));
-        }
-        if !missing.is_empty() {
-            Frame::popup(ui.style()).show(ui, |ui| missing_ui(ui, &missing, requests));
-        }
-        for (at, notice) in state.notices.iter().enumerate() {
-            // Ids depend on the notice, not on its index: a press on one notice never becomes a
-            // click on another that has moved to its place.
-            ui.push_id((&notice.text, notice.offer.map(Offer::object)), |ui| {
-                Frame::popup(ui.style()).show(ui, |ui| notice_ui(ui, at, notice, state, requests));
-            });
-        }
-        ui.data_mut(|data| data.insert_temp(seen_id(), ui.min_rect()));
+        let most = place.height();
+        let scroll = ScrollArea::vertical().max_height(most).min_scrolled_height(most);
+        scroll.show(ui, |ui| {
+            // Notices overlap other regions, so their region is limited to the controls among them.
+            let column = Rect::from_min_size(ui.cursor().min, ui.available_size());
+            let seen: Option<Rect> = ui.data(|data| data.get_temp(seen_id()));
+            regions::begin_in(ui, "notices", seen.unwrap_or(column));
+            let mut popup = |add: &mut dyn FnMut(&mut Ui)| {
+                Frame::popup(ui.style()).show(ui, |ui| {
+                    ui.set_width(width);
+                    add(ui);
+                });
+            };
+            // Tasks in progress come first, then offers, then findings.
+            if !loading.is_empty() {
+                let all: Vec<_> = loading.iter().map(|loading| &loading.task).collect();
+                popup(&mut |ui| tasks_ui(ui, &all, Request::CancelLoading, requests));
+            }
+            if !making.is_empty() {
+                let all: Vec<_> = making.iter().collect();
+                popup(&mut |ui| tasks_ui(ui, &all, Request::CancelMaking, requests));
+            }
+            if let Some(work) = state.recoverable.first() {
+                popup(&mut |ui| recoverable_ui(ui, work, state.recoverable.len(), requests));
+            }
+            if !state.missing.nearby.is_empty() {
+                popup(&mut |ui| nearby_ui(ui, state, requests));
+            }
+            if !missing.is_empty() {
+                popup(&mut |ui| missing_ui(ui, &missing, requests));
+            }
+            for group in &groups {
+                popup(&mut |ui| {
+                    ui.push_id(group.kind, |ui| notice_ui(ui, group, state, requests));
+                });
+            }
+            if dismissible > 1 && ui.button("Dismiss all").clicked() {
+                requests.push(Request::DismissNotices);
+            }
+            ui.data_mut(|data| data.insert_temp(seen_id(), ui.min_rect()));
+        });
     });
+}
+
+/// Returns the part of the picture that notices may take: the lower right corner, above the
+/// greeting and below the axes, and below the dial if that reaches so far to the right.
+fn place(ctx: &Context, picture: Rect, width: f32, state: &State) -> Rect {
+    let right = picture.right() - 8.0;
+    let area = |name| ctx.memory(|memory| memory.area_rect(Id::unique(name)));
+    let greeting = area("greeting").filter(|_| greeting::is_shown(state, picture));
+    let bottom = greeting.map_or(picture.bottom() - PLATE, |greeting| greeting.top() - 8.0);
+    let dial = area("dial").filter(|dial| state.dial.shown && dial.right() > right - width - 20.0);
+    let upper = dial.map_or(0.0, |dial| dial.bottom() + 8.0).max(picture.top() + AXES);
+    // In a very low picture, a notice matters more than the overlays.
+    let top = upper.min(bottom - 60.0);
+    Rect::from_x_y_ranges(right - width..=right, top..=bottom)
 }
 
 /// Returns the id of the notices' area in the previous frame.
@@ -87,36 +123,50 @@ fn seen_id() -> Id {
     Id::unique("place of the notices")
 }
 
+/// Shows the progress of tasks of one kind, as one.
 #[expect(clippy::cast_possible_truncation, reason = "a fraction from 0 to 1")]
-fn task_ui<T>(ui: &mut Ui, task: &Task<T>, cancel: Request, requests: &mut Requests) {
-    ui.label(&task.label);
+fn tasks_ui<T>(
+    ui: &mut Ui,
+    tasks: &[&Task<T>],
+    cancel: fn(usize) -> Request,
+    requests: &mut Requests,
+) {
+    let [first, others @ ..] = tasks else { return };
+    ui.label(match others.len() {
+        0 => first.label.clone(),
+        count => format!("{} (and {count} more)", first.label),
+    });
     ui.horizontal(|ui| {
-        let fraction = task.progress.fraction() as f32;
-        ui.add(egui::ProgressBar::new(fraction).desired_width(220.0).show_percentage());
+        let fractions = tasks.iter().map(|task| task.progress.fraction() as f32);
+        let mean = fractions.sum::<f32>() / tasks.iter().map(|_| 1.0).sum::<f32>();
+        ui.add(egui::ProgressBar::new(mean).desired_width(220.0).show_percentage());
         if ui.button("Cancel").clicked() {
-            requests.push(cancel);
+            requests.extend((0..tasks.len()).map(cancel));
         }
     });
     // The progress bar needs repaints even in an idle window.
     ui.ctx().request_repaint_after(Duration::from_millis(50));
 }
 
-/// Shows unsaved work that a crashed program has left behind.
-fn recoverable_ui(ui: &mut Ui, at: usize, work: &str, requests: &mut Requests) {
-    ui.label(work);
+/// Shows the first unsaved work that crashed programs have left behind.
+fn recoverable_ui(ui: &mut Ui, work: &str, count: usize, requests: &mut Requests) {
+    ui.label(match count {
+        1 => work.to_owned(),
+        _ => format!("{work} (1 of {count})"),
+    });
     ui.horizontal(|ui| {
-        let key = first_key(ui, Action::RecoverWork).filter(|_| at == 0);
+        let key = first_key(ui, Action::RecoverWork);
         let hint = "Opens the work in place of this scene";
         let hint = key.map_or_else(|| hint.to_owned(), |key| format!("{hint}; key {key}"));
         if ui.button("Recover").on_hover_text(hint).clicked() {
-            requests.push(Request::Recover(at));
+            requests.push(Request::Recover(0));
         }
         if ui
             .button("Discard")
             .on_hover_text("Discards the work; the File menu can restore it for 30 days")
             .clicked()
         {
-            requests.push(Request::DiscardWork(at));
+            requests.push(Request::DiscardWork(0));
         }
     });
 }
@@ -161,52 +211,41 @@ fn nearby_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     });
 }
 
-fn notice_ui(ui: &mut Ui, at: usize, notice: &Notice, state: &State, requests: &mut Requests) {
-    ui.label(&notice.text);
-    let buttons = ui.horizontal(|ui| {
-        let mut focused = false;
+fn notice_ui(ui: &mut Ui, group: &NoticeGroup<'_>, state: &State, requests: &mut Requests) {
+    let (text, details, offers) = (group.text(), group.details(), group.offers());
+    ui.label(&text);
+    let mut focused = false;
+    ui.horizontal_wrapped(|ui| {
         let mut button = |ui: &mut Ui, label: &str| {
             let button = ui.button(label);
             focused |= button.has_focus();
             button.clicked()
         };
-        match notice.offer {
-            Some(Offer::Up(id)) => up_axis_ui(ui, state, id, requests),
-            Some(offer) if button(ui, offer.label()) => {
-                requests.extend(accepted(offer, state));
-                requests.push(Request::PutAway(at));
+        match &offers[..] {
+            [] => {}
+            [Offer::Up(_), ..] => up_axis_ui(ui, state, &offers, requests),
+            [one] if button(ui, one.label()) => requests.push(Request::Accept(group.kind)),
+            [first, _, ..] if button(ui, &format!("{} all", first.label())) => {
+                requests.push(Request::Accept(group.kind));
             }
-            Some(_) | None => {}
+            [_, ..] => {}
         }
-        if !notice.details.is_empty() && button(ui, "Details") {
-            requests.push(Request::Details(at));
+        if !details.is_empty() && button(ui, "Details") {
+            requests.push(Request::Details(group.kind));
         }
         if button(ui, "Dismiss") {
-            requests.push(Request::PutAway(at));
+            requests.push(Request::PutAway(group.kind));
         }
-        focused
     });
-    if !notice.needs_answer() {
-        settle(ui, at, buttons.inner, requests);
+    if !group.needs_answer() {
+        settle(ui, (group.kind, &text), focused, requests);
     }
 }
 
-fn accepted(offer: Offer, state: &State) -> Option<Request> {
-    let gesture = Gesture::Whole;
-    match offer.command(&state.scene, &state.view) {
-        Ok(None) => None,
-        Ok(Some((command, _))) if matches!(offer, Offer::Frame(_)) => {
-            Some(Request::Navigate { command, gesture })
-        }
-        Ok(Some((command, label))) => Some(Request::Change { command, gesture, label }),
-        Err(refusal) => Some(Request::Refuse(refusal.to_string())),
-    }
-}
-
-/// Moves a notice to the status line after some seconds. The notice stays while the pointer is over
-/// it or it has the focus.
-fn settle(ui: &Ui, at: usize, focused: bool, requests: &mut Requests) {
-    let id = ui.scope_id().with("since");
+/// Moves notices to the status line after some seconds. They stay while the pointer is over them
+/// or they have the focus.
+fn settle(ui: &Ui, (kind, text): (NoticeKind, &str), focused: bool, requests: &mut Requests) {
+    let id = ui.scope_id().with(("since", text));
     let (now, pointer) = ui.input(|input| (input.time, input.pointer.hover_pos()));
     let pass = ui.ctx().cumulative_pass_nr();
     let place = ui.min_rect().expand(f32::from(theme::MARGIN));
@@ -219,23 +258,24 @@ fn settle(ui: &Ui, at: usize, focused: bool, requests: &mut Requests) {
         since
     });
     let rest = SHOWN - (now - since);
-    // Only one per frame, since the indices of the others change with it.
-    let moves = |request: &Request| matches!(request, Request::Settle(_) | Request::PutAway(_));
-    if rest <= 0.0 && !requests.iter().any(moves) {
-        requests.push(Request::Settle(at));
+    if rest <= 0.0 {
+        requests.push(Request::Settle(kind));
     } else if !held {
         ui.ctx().request_repaint_after(Duration::from_secs_f64(rest.max(0.0)));
     }
 }
 
-/// Shows the choice of the up axis of an opened model, between the two usual ones.
-fn up_axis_ui(ui: &mut Ui, state: &State, id: ObjectId, requests: &mut Requests) {
-    let Some(object) = state.scene.objects.get(id) else { return };
-    let now = object.model.options.up;
+/// Shows the choice of the up axis of opened models, between the two usual ones. An axis that is
+/// not the default can be made so.
+fn up_axis_ui(ui: &mut Ui, state: &State, offers: &[&Offer], requests: &mut Requests) {
+    let ids: Vec<ObjectId> = offers.iter().filter_map(|offer| offer.object()).collect();
+    let object = ids.iter().find_map(|id| state.scene.objects.get(*id));
+    let Some(now) = object.map(|object| object.model.options.up) else { return };
     for up in [UpAxis::Y, UpAxis::Z] {
         let label = format!("{} up", up.word().to_uppercase());
         if ui.selectable_label(now == up, label).clicked() && now != up {
-            requests.push(Request::TurnUp(vec![id], up));
+            requests.push(Request::TurnUp(ids.clone(), up));
         }
     }
+    up_by_default_ui(ui, state, now, requests);
 }

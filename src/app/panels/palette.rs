@@ -54,12 +54,7 @@ pub(crate) fn show(ui: &Ui, state: &State, requests: &mut Requests) {
         ui.set_width(width);
         contents(ui, state, requests, (room.y - 120.0).clamp(90.0, 420.0))
     });
-    // Queried once, since the query consumes the press of Esc.
-    let closes = shown.should_close();
-    if closes {
-        Keyboard::note_escape(ui.ctx());
-    }
-    if closes || shown.inner {
+    if shown.should_close() || shown.inner {
         forget(ui);
         requests.push(Action::Palette.into());
     }

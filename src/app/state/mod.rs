@@ -27,7 +27,8 @@ use marraztu_core::scene::{ItemId, Light, LightId, Object, Scene, UpAxis, View};
 use marraztu_io::{Fingerprint, Helpers, Sources, WindowState, is_example};
 use marraztu_lab::picture_source::Reference;
 use marraztu_lab::report::Report;
-pub use notices::{Message, MissingFiles, Notice, Offer, Tone};
+pub use notices::{Message, MissingFiles, Notice, NoticeKind, Offer, Tone};
+pub(crate) use notices::{NoticeGroup, OUT_OF_VIEW};
 
 /// The number of items from which the outline has a filter.
 const MANY: usize = 12;
@@ -328,10 +329,18 @@ impl State {
         }));
     }
 
+    /// Moves notices from the picture to the status line.
+    pub(crate) fn settle_notices(&mut self, which: impl Fn(&Notice) -> bool) {
+        for notice in self.notices.extract_if(.., |notice| which(notice)) {
+            self.past_notices.retain(|other| *other != notice);
+            self.past_notices.push(notice);
+        }
+    }
+
     /// Returns the last message and everything reported over the picture, one per line.
     pub(crate) fn said(&self) -> String {
         let message = self.message.iter().map(|message| message.text.clone());
-        let notices = self.notices.iter().map(|notice| notice.text.clone());
+        let notices = NoticeGroup::of(&self.notices).into_iter().map(|group| group.text());
         let cost = self.lab.lesson.and_then(|lesson| self.lab.costs.get(lesson.axis.as_str()));
         let report = self.lab.shown().filter(|_| self.panels.has(Panel::Laboratory));
         let cost = cost.map(|cost| cost.all.clone());

@@ -45,7 +45,9 @@ pub struct Preferences {
     pub helpers: Helpers,
     /// Whether models are reloaded when their files change.
     pub watches: bool,
-    /// The up axis of models with files that do not state one.
+    /// The up axis of models with files that do not state one. Older versions stored the axis of
+    /// the last model as `up`; nobody had asked for it to be the default.
+    #[serde(rename = "default_up")]
     pub up: UpAxis,
     /// Custom key bindings, by action.
     pub keys: BTreeMap<String, Vec<String>>,
@@ -249,6 +251,20 @@ mod tests {
         let asides = fs::read_dir(&folders.config).unwrap().flatten();
         assert_eq!(asides.filter(|e| e.path().to_string_lossy().contains("broken-")).count(), 3);
         assert!(!file(&folders).exists());
+    }
+
+    #[test]
+    fn the_up_axis_that_an_older_version_kept_from_the_last_model_is_no_default() {
+        let folder = tempfile::tempdir().unwrap();
+        let folders = OwnFolders::within(folder.path());
+        fs::create_dir_all(&folders.config).unwrap();
+        fs::write(file(&folders), "(scale: 1.5, up: Z)").unwrap();
+        let expected = Preferences { scale: 1.5, ..Preferences::default() };
+        assert_eq!(Preferences::load(&folders), (expected, None));
+        // An axis that is asked for is kept.
+        let asked = Preferences { up: UpAxis::Z, ..Preferences::default() };
+        asked.save(&folders, &Preferences::default()).unwrap();
+        assert_eq!(Preferences::load(&folders).0.up, UpAxis::Z);
     }
 
     #[test]

@@ -6,7 +6,7 @@ use egui::{Button, Id, Ui};
 use glam::{DMat3, DMat4, DVec3};
 
 use super::several::label;
-use super::{material, missing_ui, number_row, steps_ui};
+use super::{material, missing_ui, number_row, steps_ui, up_by_default_ui};
 use crate::app::actions::{Request, Requests, change};
 use crate::app::state::State;
 use crate::app::widgets::color_picker::swatch;
@@ -151,6 +151,9 @@ impl Shown<'_> {
         let all: Vec<_> = axes.map(|up| (up.word().to_uppercase(), up, hint)).collect();
         if let Some(up) = row(ui, "Up axis", |ui| choose(ui, "Up axis", now, &all)) {
             requests.push(Request::TurnUp(self.ids(), up));
+        }
+        if now != self.state.up {
+            row(ui, "", |ui| up_by_default_ui(ui, self.state, now, requests));
         }
     }
 
