@@ -101,13 +101,40 @@ fn at_180_degrees_all_faces_around_a_vertex_are_smooth() {
 }
 
 #[test]
-fn an_edge_of_exactly_the_crease_angle_is_smooth() {
+fn an_edge_of_exactly_the_crease_angle_is_sharp() {
     for text in [CUBE, &turned_cube()] {
-        assert!(flat(&mesh(text, 90.0)).is_empty());
-        assert_eq!(mesh(text, 90.0).points().len(), 8);
-        let count = mesh(text, 89.999).polygon_count();
-        assert_eq!(flat(&mesh(text, 89.999)).len(), count);
-        assert_eq!(flat(&mesh(text, 0.0)).len(), count);
+        assert!(flat(&mesh(text, 91.0)).is_empty());
+        assert_eq!(mesh(text, 91.0).points().len(), 8);
+        for degrees in [90.0, 89.999, 0.0] {
+            let cube = mesh(text, degrees);
+            assert_eq!(flat(&cube).len(), cube.polygon_count(), "{degrees}");
+        }
+    }
+}
+
+/// A prism around +Y with coordinates of `decimals` decimals, turned about an oblique axis.
+fn prism(sides: u32, radius: f64, degrees: f64, decimals: usize) -> String {
+    let axis = DVec3::new(1.0, 2.0, 3.0).normalize_or_zero();
+    let turn = glam::DMat3::from_axis_angle(axis, degrees.to_radians());
+    let place = |line: &str| {
+        let Some(rest) = line.strip_prefix("v ") else { return format!("{line}\n") };
+        let numbers: Vec<f64> = rest.split(' ').map(|word| word.parse().unwrap()).collect();
+        let p = turn * (radius * DVec3::from_slice(&numbers));
+        format!("v {:.decimals$} {:.decimals$} {:.decimals$}\n", p.x, p.y, p.z)
+    };
+    cylinder(sides).lines().map(place).collect()
+}
+
+#[test]
+fn hexagonal_prisms_have_sharp_edges_however_their_numbers_are_rounded() {
+    for (radius, decimals) in [(1.0, 17), (1.0, 6), (1.0, 3), (8.66, 3), (1000.0, 0), (0.01, 5)] {
+        for degrees in [0.0, 7.0, 30.0, 61.0, 90.0, 123.0] {
+            let hexagon = mesh(&prism(6, radius, degrees, decimals), 60.0);
+            let text = format!("radius {radius}, {decimals} decimals, {degrees} degrees");
+            assert_eq!(hexagon.points().len(), 36, "{text}");
+            let heptagon = mesh(&prism(7, radius, degrees, decimals), 60.0);
+            assert_eq!(heptagon.points().len(), 28, "{text}");
+        }
     }
 }
 

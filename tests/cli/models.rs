@@ -166,7 +166,7 @@ fn edges_sharper_than_the_given_crease_angle_are_sharp() {
     let flat = drawn(&["--crease", "0"]);
     assert!(flat != smooth);
     assert!(drawn(&[]) == smooth, "60 degrees are more than 45");
-    assert!(drawn(&["--crease", "45"]) == smooth && drawn(&["--crease", "44.9"]) == flat);
+    assert!(drawn(&["--crease", "46"]) == smooth && drawn(&["--crease", "45"]) == flat);
     assert!(drawn(&["--normals", "face"]) == flat);
     for command in
         [&["info", "--crease", "44.5"][..], &["plan", "--size", "8x8", "--crease", "44.5"]]

@@ -160,7 +160,7 @@ impl MaterialDialog {
                 let label = ui.label("Crease angle");
                 let value = egui::DragValue::new(&mut self.crease).speed(0.5).range(0.0..=180.0);
                 let field = ui.add_enabled(idle.is_none(), value.suffix(" deg"));
-                let hint = "Edges are sharp if their faces differ by more than this angle";
+                let hint = "Edges are sharp if their faces differ by this angle or more";
                 field
                     .labelled_by(label.id)
                     .on_hover_text(hint)

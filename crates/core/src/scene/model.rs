@@ -86,7 +86,7 @@ pub struct LoadOptions {
     pub scale: Scale,
     /// The orientation of the file's polygons, seen from outside.
     pub winding: Winding,
-    /// The angle up to which edges are smooth, if the file has no smoothing groups.
+    /// The angle below which edges are smooth, if the file has no smoothing groups.
     pub crease: Crease,
     /// The interpretation of bump maps.
     pub bumps: BumpMaps,

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// The angle between the normals of two faces up to which the edge between them is smooth: 0 to 180
+/// The angle between the normals of two faces below which the edge between them is smooth: 0 to 180
 /// degrees.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd, Serialize, Deserialize)]
 #[serde(into = "f64", try_from = "f64")]
@@ -11,6 +11,9 @@ pub struct Crease(f64);
 impl Crease {
     /// All faces around a vertex are smooth with each other, even without a common edge.
     pub const SMOOTH: Self = Self(180.0);
+
+    /// All edges are sharp.
+    pub const FLAT: Self = Self(0.0);
 
     /// Returns `degrees` as a crease angle if they are from 0 to 180.
     pub fn new(degrees: f64) -> Option<Self> {
@@ -46,7 +49,7 @@ impl TryFrom<f64> for Crease {
 /// The rule for sharing computed normals between polygons.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Smoothing {
-    /// Polygons share normals if edges no sharper than this angle connect them.
+    /// Polygons share normals if edges below this angle connect them.
     Crease(Crease),
     /// Polygons share normals if they share a smoothing group. Lists the group of each polygon, 0
     /// for none.

@@ -19,8 +19,8 @@ impl Shown<'_> {
         let idle = items::why_no_crease(&object.model, object.file_normals);
         let idle = idle.map(|why| format!("Off: {why}"));
         let hint = idle.as_deref().unwrap_or(
-            "Edges between faces that differ by more degrees are sharp: 0 for flat faces, 180 for \
-             none",
+            "Edges between faces that differ by this angle or more are sharp: 0 for flat faces, \
+             180 for none",
         );
         let waiting = Waiting::of(ui);
         let now = waiting.map_or(object.model.options.crease.get(), |waiting| waiting.degrees);

@@ -7,11 +7,11 @@
 //! In a fine model nearly every vertex has one fan. This case is found without looking at edges: if
 //! the unit normals n_i of k faces have the sum S, then |S| = sum of n_i . S/|S|, so
 //!
-//!   |S| >= k - 1 + cos(crease / 2)
+//!   |S| >= k - 1 + cos(c / 2)
 //!
-//! holds only if no n_i is farther from S than half the crease, and so no two are farther apart
-//! than the crease. The faces must also be connected. At all other vertices, faces are joined edge
-//! by edge, in time k log k.
+//! holds only if no n_i is farther from S than half of c, the largest angle of a smooth edge, and so
+//! no two are farther apart than c. The faces must also be connected. At all other vertices, faces
+//! are joined edge by edge, in time k log k.
 
 use glam::DVec3;
 use rayon::prelude::*;
@@ -24,9 +24,13 @@ use crate::scene::mesh::outlines::Outlines;
 use crate::scene::mesh::sets::Sets;
 use crate::scene::{Crease, NONE, Point, dvec3};
 
-/// A smooth edge may exceed the crease angle by this angle, in degrees. Numbers in files have about
-/// six digits, so right angles are only that exact.
-const TOLERANCE: f64 = 1e-4;
+/// Edges are sharp from this share of the crease angle on. The 60 degrees of a hexagonal bar with
+/// three decimals are exact to 0.2 only, and all of its edges have to look alike.
+const SHARP_FROM: f64 = 0.99;
+
+/// The largest angle in degrees between faces that count as one plane: numbers in files have about
+/// six digits.
+const PLANE: f64 = 1e-4;
 
 /// The most faces around a vertex or an edge that are compared pair by pair; more are sorted first.
 const FEW: usize = 16;
@@ -44,7 +48,7 @@ pub(crate) enum Rule<'a> {
     Groups(&'a [u32]),
 }
 
-/// The crease angle c, in the forms that comparisons need.
+/// The largest angle c of smooth edges, in the forms that comparisons need.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Limit {
     /// cos^2(c / 2)
@@ -57,14 +61,15 @@ pub(crate) struct Limit {
 
 impl Limit {
     pub(crate) fn new(crease: Crease) -> Self {
-        let half = |degrees: f64| degrees.min(180.0).to_radians() / 2.0;
-        let (sin, cos) = libm::sincos(half(crease.get() + TOLERANCE));
-        // Half of the tolerance is left for rounding.
-        let slack = 1.0 - libm::cos(half(crease.get() + TOLERANCE / 2.0));
+        let half = |degrees: f64| degrees.to_radians() / 2.0;
+        let largest = (SHARP_FROM * crease.get()).max(PLANE);
+        let (sin, cos) = libm::sincos(half(largest));
+        // The quick check leaves room for rounding.
+        let slack = 1.0 - libm::cos(half(largest - PLANE / 2.0));
         Self { cos2: cos * cos, sin2: sin * sin, slack }
     }
 
-    /// Returns whether the angle between two unit vectors is at most the crease angle:
+    /// Returns whether the angle between two unit vectors is at most c:
     ///
     ///   tan(angle / 2) = |a - b| / |a + b|
     ///
