@@ -90,3 +90,69 @@ fn comments_with_colours_of_zbrush_are_found() {
     let folder = Folder::with(&[("a.obj", &text)]);
     assert!(folder.info("a.obj").contains("a comment #MRGB (vertex colours of ZBrush) is ignored"));
 }
+
+#[test]
+fn pointers_of_git_lfs_are_named_wherever_a_file_is_read() {
+    const POINTER: &str = "version https://git-lfs.github.com/spec/v1\noid sha256:\
+        4d7a214614ab2935c943f9e0ff69d22eadbb8f32b1258daaa5e2ca24d17e2393\nsize 12345\n";
+    let folder = Folder::with(&[
+        ("a.obj", POINTER),
+        ("a.obj.gz", POINTER),
+        ("a.stl", POINTER),
+        ("a.marraztu", POINTER),
+        ("unnamed", POINTER),
+        ("b.obj", SQUARE),
+        ("a.mtl", POINTER),
+    ]);
+    for name in ["a.obj", "a.obj.gz", "a.stl", "a.marraztu", "unnamed"] {
+        let told = folder.ends(1, &["info", name]);
+        assert!(told.contains("Git LFS pointer") && told.contains("git lfs pull"), "{told}");
+    }
+    let info = folder.info("b.obj");
+    assert!(info.contains("the material file cannot be read: this is a Git LFS pointer"), "{info}");
+    // Textures of a repository without its contents are one finding.
+    let mtl = "newmtl m\nKd 1 1 1\nmap_Kd 0.png\nmap_Ks 1.png\nmap_Ke 2.jpg\n";
+    let folder = Folder::with(&[
+        ("b.obj", SQUARE),
+        ("a.mtl", mtl),
+        ("0.png", POINTER),
+        ("1.png", POINTER),
+        ("2.jpg", POINTER),
+    ]);
+    let info = folder.info("b.obj");
+    assert_eq!(info.matches("Git LFS").count(), 1, "{info}");
+    assert!(info.contains("3 textures (the first: \"0.png\") are Git LFS pointers"), "{info}");
+}
+
+#[test]
+fn repairs_of_many_materials_are_one_finding_each() {
+    let folder = Folder::with(&[]);
+    folder.picture("n.png", 32, |x, y| {
+        let tilt = |i: usize| u8::try_from(118 + 20 * (i % 2)).unwrap();
+        [tilt(x), tilt(y), 254, 255]
+    });
+    let (mut obj, mut mtl) =
+        (String::from("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n"), String::new());
+    for i in 0..30 {
+        obj += &format!("g a{i}\nusemtl m{i}\nf 1 2 3\ng b{i}\nusemtl none{i}\nf 1 2 3\n");
+        mtl += &format!(
+            "newmtl m{i}\nKa 1 1 1\nKd 40.5 2 1\nKs 1 1 1\nNs 0.5\nd 0\nTr 0\nillum 7\n\
+             map_Kd n.png\nmap_d n.png\nmap_Bump n.png\nnewmtl m{i}\nKd 1 1 1\n"
+        );
+    }
+    std::fs::write(folder.at("a.obj"), obj).unwrap();
+    std::fs::write(folder.at("a.mtl"), mtl).unwrap();
+    let info = folder.info("a.obj");
+    let findings: Vec<&str> =
+        info.lines().skip_while(|line| !line.starts_with("findings")).collect();
+    assert!(findings.len() < 14, "{}", findings.join("\n"));
+    for text in [
+        "30 materials (the first: \"none0\") are not defined",
+        "30 definitions repeat earlier ones",
+        "30 bump maps (the first: \"n.png\") show normals",
+        "the textures of 30 materials",
+        "30 materials: d 0 contradicts Tr 0",
+    ] {
+        assert!(info.contains(text), "{text}: {info}");
+    }
+}

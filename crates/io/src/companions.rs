@@ -36,7 +36,7 @@ pub struct Companion {
 /// If the model cannot be read.
 pub fn companions(path: &Path) -> Result<Vec<Companion>, LoadError> {
     let file = shown(path);
-    let text = unpacked(path, &file)?;
+    let text = unpacked(path, &file, &Progress::new())?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let folders = vec![folder.to_owned()];
     let mut locator = Locator::default();

@@ -7,6 +7,10 @@ use super::progress::Cancelled;
 /// The message for files that do not fit in memory.
 pub(super) const NO_MEMORY: &str = "there is not enough memory for it";
 
+/// The message for files in place of contents that Git LFS stores elsewhere.
+pub(super) const LFS_POINTER: &str =
+    "this is a Git LFS pointer without the file's content: run \"git lfs pull\"";
+
 /// The reason why a file could not be loaded. A failed load changes nothing.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum LoadError {

@@ -47,6 +47,12 @@ kinds! {
     VertexUnreadable [Joined, Loss]:
         "a vertex cannot be read (@) and is skipped",
         "# vertices cannot be read (the first: @) and are skipped";
+    TriangleNotFinite [Loss]:
+        "a triangle has a corner that is unreadable, too large, infinite or NaN, and is skipped",
+        "# triangles have corners that are unreadable, too large, infinite or NaN, and are skipped";
+    StlUnknown [Joined]:
+        "the word \"@\" is not a statement of STL and is ignored",
+        "# words (the first: \"@\") are not statements of STL and are ignored";
     VertexUnused:
         "a vertex is not used by any face and does not affect size and centre",
         "# vertices are not used by any face and do not affect size and centre";
@@ -152,10 +158,12 @@ kinds! {
         "a statement \"mtllib\" is ignored: at most 1000 different ones are read",
         "# statements \"mtllib\" are ignored: at most 1000 different ones are read";
     MtlUnreadable [Loss]: "the material file cannot be read: @";
-    MaterialUnknown: "the material \"@\" is not defined: silver is used";
-    MaterialTwice:
+    MaterialUnknown [Joined]:
+        "the material \"@\" is not defined: silver is used",
+        "# materials (the first: \"@\") are not defined: silver is used";
+    MaterialTwice [Joined]:
         "the material \"@\" is defined twice: the first is used",
-        "the material \"@\" is defined # times more: the first is used";
+        "# definitions repeat earlier ones (such as that of material \"@\"), which are used";
     MtlStray [Joined]:
         "a statement \"@\" comes before any newmtl and is ignored",
         "# statements (the first: \"@\") come before any newmtl and are ignored";
@@ -177,13 +185,17 @@ kinds! {
     MendedMatt [Joined]:
         "material \"@\": Ns is missing or 0: the surface is matt, without the highlight of Ks",
         "# materials: Ns is missing or 0: the surfaces are matt, without the highlights of Ks";
-    MendedBytes: "the colours of materials are whole numbers above 16 and are read as 0 to 255";
+    MendedBytes [Joined]:
+        "material \"@\": whole colours above 1 are read as 0 to 255",
+        "# materials: whole colours above 1 are read as 0 to 255";
     DiffuseBlack [Joined, Loss]:
         "material \"@\": Kd 0 makes its texture black",
         "# materials: Kd 0 makes their textures black";
-    BumpIsNormals:
+    BumpIsNormals [Joined]:
         "the bump map \"@\" shows normals and is read as a normal map; --bump-maps heights reads \
-         it as heights";
+         it as heights",
+        "# bump maps (the first: \"@\") show normals and are read as normal maps; --bump-maps \
+         heights reads them as heights";
     MendedEmission [Joined]:
         "material \"@\": map_Ke without Ke; Ke is taken as 1",
         "# materials: map_Ke without Ke; Ke is taken as 1";
@@ -200,17 +212,26 @@ kinds! {
         "material \"@\": a value is outside 0 to 1 and is clamped",
         "# values of materials are outside 0 to 1 and are clamped";
     MendedTransparency [Joined]:
-        "material \"@\": Tr 1, which would hide the whole model, is taken as opaque",
-        "# materials: Tr 1, which would hide the whole model, is taken as opaque";
+        "material \"@\": d 0 or Tr 1, which would hide the whole model, is taken as opaque",
+        "# materials: d 0 or Tr 1, which would hide the whole model, is taken as opaque";
+    MendedContradiction [Joined]:
+        "material \"@\": d 0 contradicts Tr 0 and is taken as 1",
+        "# materials: d 0 contradicts Tr 0 and is taken as 1";
     MendedDissolve [Joined]:
         "material \"@\": d 0, which would hide all that map_d shows, is taken as 1",
         "# materials: d 0, which would hide all that map_d shows, is taken as 1";
-    Unlit [Joined]:
-        "material \"@\": illum 0: it shows its colour alone, without light",
-        "# materials: illum 0: they show their colours alone, without light";
+    MendedConstant [Joined]:
+        "material \"@\": illum 0 without a texture is taken as 1: it is lit, without a highlight",
+        "# materials: illum 0 without a texture is taken as 1: they are lit, without highlights";
+    ColorTextured [Joined]:
+        "material \"@\": its texture replaces the vertex colours",
+        "# materials: their textures replace the vertex colours";
     Transparent [Joined, Loss]:
         "material \"@\" is wholly transparent and draws nothing",
         "# materials are wholly transparent and draw nothing";
+    MapOpaque [Joined]:
+        "material \"@\": map_d names the picture of map_Kd, which has no alpha: it is opaque",
+        "# materials: map_d names the picture of map_Kd, which has no alpha: they are opaque";
     MapUnnamed [Joined]:
         "a statement \"@\" names no file and is ignored",
         "# statements (the first: \"@\") name no file and are ignored";
@@ -219,11 +240,18 @@ kinds! {
         "# statements \"@\" are ignored: maps of this kind are not drawn";
     MapOption: "the option \"@\" of a map is ignored", "the option \"@\" of # maps is ignored";
     TextureMissing [Loss]: "the texture \"@\" was not found";
-    TextureUnmapped [Loss]: "the texture @ is not shown: its faces have no texture coordinates";
+    TextureUnmapped [Joined, Loss]:
+        "the texture @ is not shown: its faces have no texture coordinates",
+        "the textures of # materials (the first: @) are not shown: their faces have no texture \
+         coordinates";
     TextureMany:
         "a texture is ignored: at most 10,000 different ones are read",
         "# textures are ignored: at most 10,000 different ones are read";
     TextureUnreadable [Loss]: "the texture cannot be read: @";
+    TexturePointer [Joined, Loss]:
+        "the texture \"@\" is a Git LFS pointer without its content: run \"git lfs pull\"",
+        "# textures (the first: \"@\") are Git LFS pointers without their content: run \"git lfs \
+         pull\"";
     TextureCutOff [Loss]:
         "the texture is cut off: @ ends early, and the rest of the picture is grey";
     ModelMissing [Loss]: "the model \"@\" was not found: a box is shown instead";

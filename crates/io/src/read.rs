@@ -1,10 +1,10 @@
 //! Reads files into memory, up to a size limit.
 
 use std::fs::{File, FileType, Metadata};
-use std::io::{Chain, Cursor, Read};
+use std::io::{Chain, Cursor, Read, Seek};
 use std::path::Path;
 
-use super::error::{LoadError, NO_MEMORY, shown};
+use super::error::{LFS_POINTER, LoadError, NO_MEMORY, shown};
 use super::examples::scene_text;
 use super::progress::Progress;
 
@@ -28,16 +28,38 @@ pub fn check_file(path: &Path) -> Result<(), LoadError> {
     readable(path).map(|_| ())
 }
 
+/// The first bytes of the files that Git LFS writes in place of contents, and of its predecessor's.
+const LFS_POINTERS: [&[u8]; 2] =
+    [b"version https://git-lfs.github.com/spec/", b"version https://hawser.github.com/spec/"];
+
+/// The largest size of an LFS pointer, by its specification.
+const LARGEST_POINTER: u64 = 1024;
+
 /// Opens a file of at most `most` bytes, and returns its size as far as it is known. Fails if it
-/// cannot be opened, is not a file, or is larger.
+/// cannot be opened, is not a file, is larger, or is a Git LFS pointer.
 pub(super) fn open(path: &Path, most: usize) -> Result<(File, usize), LoadError> {
     let metadata = readable(path)?;
     let size = usize::try_from(metadata.len()).unwrap_or(usize::MAX);
     if size > most {
         return Err(LoadError::too_large(&shown(path), most));
     }
-    let handle = File::open(path).map_err(|error| LoadError::system(&shown(path), &error))?;
+    let system = |error: std::io::Error| LoadError::system(&shown(path), &error);
+    let mut handle = File::open(path).map_err(system)?;
+    // A pipe has no size, and cannot be rewound.
+    if metadata.is_file() && (1..=LARGEST_POINTER).contains(&metadata.len()) {
+        let mut head = Vec::new();
+        handle.by_ref().take(LARGEST_POINTER).read_to_end(&mut head).map_err(system)?;
+        if is_lfs_pointer(&head) {
+            return Err(LoadError::file(&shown(path), LFS_POINTER));
+        }
+        handle.rewind().map_err(system)?;
+    }
     Ok((handle, size))
+}
+
+/// Returns whether a file with these first bytes is a Git LFS pointer.
+pub(super) fn is_lfs_pointer(head: &[u8]) -> bool {
+    LFS_POINTERS.iter().any(|begin| head.starts_with(begin))
 }
 
 /// Rejects anything but a regular file before it is opened: opening a pipe would wait for a writer.
@@ -165,6 +187,21 @@ mod tests {
         assert_eq!(read(3 << 20).unwrap().len(), 3 << 20);
         let refusal = format!("{}: the file is larger than 2 MB", path.display());
         assert_eq!(read((3 << 20) - 1).unwrap_err().to_string(), refusal);
+    }
+
+    #[test]
+    fn a_pointer_of_git_lfs_is_refused_and_a_text_about_one_is_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        let pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n";
+        let read = |text: &str| {
+            std::fs::write(&path, text).unwrap();
+            read(&path, 1 << 20, &Progress::new())
+        };
+        let refusal = read(pointer).unwrap_err().to_string();
+        assert_eq!(refusal, format!("{}: {LFS_POINTER}", path.display()));
+        let comment = format!("# {pointer}");
+        assert_eq!(read(&comment).unwrap(), comment.as_bytes(), "from its first byte");
     }
 
     #[test]

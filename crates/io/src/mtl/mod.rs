@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 use self::map::{Map, map};
 use self::mend::scale_bytes;
 use self::normal_map::shows_normals;
-use super::error::{LoadError, short_name, shown};
+use super::error::{LFS_POINTER, LoadError, short_name, shown};
 use super::export::is_signed;
 use super::findings::{Finding, FindingKind, Findings, joined};
 use super::locate::Locator;
@@ -305,6 +305,10 @@ impl<'a> Library<'a> {
                 None
             }
         }
+            Err(LoadError::File { file, reason }) if reason == LFS_POINTER => {
+                note(FindingKind::TexturePointer, &file);
+                None
+            }
     }
 }
 

@@ -37,7 +37,7 @@ pub(crate) use self::join::MOST_BYTES;
 use self::join::Content;
 use self::parts::NamedPart;
 use self::sound::FaceRuns;
-use super::error::{LoadError, short_name, shown};
+use super::error::{LFS_POINTER, LoadError, short_name, shown};
 use super::findings::{Finding, FindingKind, Findings, joined};
 use super::locate::of_model;
 use super::mtl::Library;
@@ -87,8 +87,9 @@ pub(super) fn load_with(
     // An absolute path stays valid when the current folder changes.
     let source = Some(std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned()));
     if is_stl(path) {
+        let bytes = unpacked(path, &file, &progress.part(0.0, 0.2))?;
         let Loaded { model, findings } =
-            stl::parse(&unpacked(path, &file)?, &file, options, progress)?;
+            stl::parse(&bytes, &file, options, &progress.part(0.2, 1.0))?;
         return Ok(Loaded { model: Model { source, ..model }, findings });
     }
     let (text, size) = read::open(path, MOST_BYTES)?;
@@ -218,6 +219,9 @@ fn no_obj(bytes: &[u8], whole: bool) -> Option<String> {
     }
     for (begin, what) in known {
         if bytes.starts_with(begin) {
+    if read::is_lfs_pointer(bytes) {
+        return Some(LFS_POINTER.to_owned());
+    }
             return Some(format!("this is not an OBJ file but {what}"));
         }
     }
@@ -332,9 +336,10 @@ fn own_library(
 fn named_parts(parts: &[NamedPart], library: &Library<'_>, findings: &mut Findings) -> Vec<Part> {
     let named = |(i, part): (usize, &NamedPart)| {
         let names = &part.names;
+    let mut unknown = BTreeSet::new();
         let material = names.material.as_deref().and_then(|name| {
             let place = library.place(name);
-            if place.is_none() && !name.is_empty() {
+            if place.is_none() && !name.is_empty() && unknown.insert(name.to_owned()) {
                 findings.add(FindingKind::MaterialUnknown, name, Some(part.line));
             }
             place
@@ -454,7 +459,10 @@ fn note_unmapped(mesh: &Mesh, materials: &[FileMaterial], findings: &mut Finding
         *is_mapped = *is_mapped || mesh.has_uvs(polygon);
     }
     for (part, seen) in mesh.parts().iter().zip(seen) {
-        if let ([true, false], Some((material, texture))) = (seen, texture(part)) {
+        if let ([true, false], Some((material, texture))) = (seen, texture(part))
+            && noted.insert(part.material)
+        {
+    let mut noted = BTreeSet::new();
             let name = format!("{} of material \"{}\"", short_name(&texture.source), material.name);
             findings.add(FindingKind::TextureUnmapped, &name, None);
         }
