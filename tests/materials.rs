@@ -25,7 +25,7 @@ fn with_files(obj: &str, mtl: (&str, &str)) -> Loaded {
     std::fs::write(&path, format!("v 0 0 0\nv 1 0 0\nv 0 1 0\n{obj}")).unwrap();
     std::fs::create_dir(folder.path().join("Maps")).unwrap();
     std::fs::write(folder.path().join(mtl.0), mtl.1).unwrap();
-    let picture = Picture::filled(Size::new(1, 2), [1, 2, 3, 255]);
+    let picture = Picture::filled(Size::new(1, 2), [1, 2, 3, 200]);
     save_picture(&folder.path().join("Maps/wood 1.png"), &picture).unwrap();
     load(&path, &LoadOptions::default(), &Progress::new()).unwrap()
 }
@@ -104,11 +104,11 @@ fn a_texture_that_is_missing_or_broken_is_listed_and_the_model_stays() {
     assert_eq!(text, format!("the texture cannot be read: {path}: {reason}"));
 }
 
-/// Loads three materials with these `Tr` statements, two of them used. Returns the opacity of the
+/// Loads three materials with these statements of opacity, two of them used. Returns the opacity of the
 /// first, and the findings.
-fn with_tr(tr: [&str; 3]) -> (f64, Vec<(FindingKind, usize)>) {
-    let material = |(name, tr): (&str, &str)| format!("{}{tr}\n", RED.replace("red", name));
-    let mtl: String = ["a", "b", "c"].into_iter().zip(tr).map(material).collect();
+fn with_opacities(given: [&str; 3]) -> (f64, Vec<(FindingKind, usize)>) {
+    let material = |(name, given): (&str, &str)| format!("{}{given}\n", RED.replace("red", name));
+    let mtl: String = ["a", "b", "c"].into_iter().zip(given).map(material).collect();
     let obj = "mtllib m.mtl\nusemtl a\nf 1 2 3\nusemtl b\nf 1 2 3\n";
     let loaded = with_files(obj, ("m.mtl", &mtl));
     let found = loaded.findings.iter().map(|finding| (finding.kind, finding.count)).collect();
@@ -116,17 +116,27 @@ fn with_tr(tr: [&str; 3]) -> (f64, Vec<(FindingKind, usize)>) {
 }
 
 #[test]
-fn tr_1_in_all_materials_that_are_used_is_opaque_and_else_transparent() {
-    use FindingKind::{MendedTransparency, Transparent};
-    assert_eq!(with_tr(["Tr 1.0", "Tr 1", "Tr 1.0"]), (1.0, vec![(MendedTransparency, 3)]));
-    // Unused materials do not count as evidence for a convention.
-    let unused = vec![(MendedTransparency, 2)];
-    assert_eq!(with_tr(["Tr 1.0", "Tr 1", "d 0.5"]), (1.0, unused));
-    assert_eq!(with_tr(["Tr 1.0", "Tr 0", "Tr 0"]), (0.0, vec![(Transparent, 1)]));
-    assert_eq!(with_tr(["Tr 1.0", "d 1", "d 1"]), (0.0, vec![(Transparent, 1)]));
-    assert_eq!(with_tr(["d 0", "d 0", "d 0"]), (0.0, vec![(Transparent, 3)]));
-    assert_eq!(with_tr(["Tr 1", "Tr 0.9", "Tr 0.1"]), (0.0, vec![(Transparent, 1)]));
-    assert_eq!(with_tr(["Tr 0.75", "Tr 0.9", "Tr 0.1"]), (0.25, Vec::new()));
+fn an_opacity_that_hides_all_used_materials_is_1_and_else_0() {
+    use FindingKind::{MendedContradiction, MendedTransparency, Transparent};
+    let rows = [
+        (["Tr 1.0", "Tr 1", "Tr 1.0"], 1.0, vec![(MendedTransparency, 3)]),
+        (["d 0", "d 0.000", "d 0"], 1.0, vec![(MendedTransparency, 3)]),
+        (["d 0", "Tr 1", "d 1"], 1.0, vec![(MendedTransparency, 2)]),
+        // Unused materials do not count as evidence for a convention.
+        (["Tr 1.0", "Tr 1", "d 0.5"], 1.0, vec![(MendedTransparency, 2)]),
+        (["Tr 1.0", "Tr 0", "Tr 0"], 0.0, vec![(Transparent, 1)]),
+        (["Tr 1.0", "d 1", "d 1"], 0.0, vec![(Transparent, 1)]),
+        (["d 0", "d 1", "d 1"], 0.0, vec![(Transparent, 1)]),
+        (["d 0\nTr 1", "d 1", "d 1"], 0.0, vec![(Transparent, 1)]),
+        (["Tr 1", "Tr 0.9", "Tr 0.1"], 0.0, vec![(Transparent, 1)]),
+        (["Tr 0.75", "Tr 0.9", "Tr 0.1"], 0.25, Vec::new()),
+        // One of the two statements is meant the other way.
+        (["d 0\nTr 0", "d 1", "d 1"], 1.0, vec![(MendedContradiction, 1)]),
+        (["Tr 0.0\nd 0", "Tr 0.0\nd 0", "d 1"], 1.0, vec![(MendedContradiction, 2)]),
+    ];
+    for (given, opacity, findings) in rows {
+        assert_eq!(with_opacities(given), (opacity, findings), "{given:?}");
+    }
 }
 
 #[test]

@@ -219,6 +219,7 @@ impl Copied {
             texture: self.texture,
             maps: SurfaceMaps::default(),
             unlit: false,
+            multiplies_colors: true,
             undrawn: BTreeMap::new(),
         };
         Ok(Model {

@@ -110,7 +110,7 @@ fn numbers_and_maps_of_materials_come_back() {
          Pcr .3\naniso .4\nanisor .5\nillum 7\nd .75",
         "Kd .5 .25 1\nKs 0 0 0\nillum 0\nmap_Kd t.png",
         "Kd 1 1 1\nKs 1 1 1\nNs 9\nmap_Kd -o .25 .5 0 -s 2 3 1 t.png\nmap_Ks -clamp on t.png\n\
-         bump -bm 2 t.png\nmap_d t.png\nmap_Ke t.png",
+         bump -bm 2 t.png\nmap_d n.png\nmap_Ke t.png",
         "Kd 1 1 1\nKs 1 1 1\nNs 9\nnorm n.png",
         "Kd 1 1 1\nKs 1 1 1\nNs 9\nbump t.png\nnorm n.png",
         "Kd .5 .25 1\nKs 0 0 0\nKe 0 0 0\nmap_Ke t.png",

@@ -178,6 +178,7 @@ pub(crate) fn mapped(rng: &mut Rng) -> Shared<Model> {
         texture: rng.percent(50).then(|| texture(rng)),
         maps: maps(rng),
         unlit: rng.percent(10),
+        multiplies_colors: true,
         undrawn: Undrawn::new(),
     };
     model("mapped", source, vec![file])

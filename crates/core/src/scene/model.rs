@@ -221,6 +221,8 @@ pub struct FileMaterial {
     pub maps: SurfaceMaps,
     /// Whether the surface shows Kd regardless of light: `illum 0`.
     pub unlit: bool,
+    /// Whether vertex colours multiply the texture, rather than being replaced by it.
+    pub multiplies_colors: bool,
     /// The numbers of statements that do not affect pictures, such as `Ni` and `Pr`, for exports.
     pub undrawn: Undrawn,
 }
@@ -235,6 +237,7 @@ impl FileMaterial {
             texture: None,
             maps: SurfaceMaps::new(),
             unlit: false,
+            multiplies_colors: true,
             undrawn: Undrawn::new(),
         }
     }

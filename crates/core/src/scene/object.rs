@@ -245,6 +245,8 @@ impl Object {
             material,
             opacity: opacity * self.opacity,
             unlit: of_file && file.is_some_and(|file| file.unlit),
+            multiplies_colors: self.texture.is_none()
+                && file.is_none_or(|file| file.multiplies_colors),
             texture: texture.filter(|_| self.surface != Surface::Material),
             maps: file.map(|file| &file.maps).filter(|_| self.surface != Surface::Material),
             of_file,
@@ -263,6 +265,8 @@ pub struct PartLook<'a> {
     pub unlit: bool,
     /// The texture to show, if any.
     pub texture: Option<&'a Shared<Texture>>,
+    /// Whether vertex colours multiply the texture, rather than being replaced by it.
+    multiplies_colors: bool,
     /// The maps to show, if any.
     maps: Option<&'a SurfaceMaps>,
     /// Whether the material is the file's. If so, its opacity map is used together with its `d`.
@@ -270,6 +274,11 @@ pub struct PartLook<'a> {
 }
 
 impl<'a> PartLook<'a> {
+    /// Returns whether vertex colours are shown on faces with this texture, or without one.
+    pub fn shows_colors_with(&self, texture: Option<&Shared<Texture>>) -> bool {
+        texture.is_none() || self.multiplies_colors
+    }
+
     /// Returns the map of this kind to show, if any. Like the file's texture, the file's maps apply
     /// to any chosen material. The exception is `map_d`, which goes with the `d` of the file's
     /// material.

@@ -218,7 +218,7 @@ impl Writer<'_> {
             let uvs: Vec<_> = vertices.all.iter().map(|it| plain.laid(uv(it))).collect();
             put(Semantic::TexCoords(0), buffer.floats(root, &uvs));
         }
-        if has_colors(object) {
+        if self.looks.all[look].colored && has_colors(object) {
             let color = |i: u32| mesh.colors()[i as usize].map(|s| linear(f64::from(s)));
             let colors: Vec<_> = points().map(|point| color(point.position)).collect();
             put(Semantic::Colors(0), buffer.floats(root, &colors));

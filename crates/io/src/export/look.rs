@@ -29,6 +29,8 @@ pub(super) struct Look {
     pub(super) base: [f64; 3],
     pub(super) opacity: f64,
     pub(super) texture: Option<Shared<Texture>>,
+    /// Whether vertex colours are shown, if there are any.
+    pub(super) colored: bool,
     pub(super) two_sided: bool,
     /// Whether Kd and texture are shown without lighting.
     pub(super) unlit: bool,
@@ -90,7 +92,7 @@ impl Key {
     fn of(look: &Look) -> Self {
         let Material { ambient, diffuse, specular, exponent, emission } = look.material;
         let colors = [ambient, diffuse, specular, emission, look.base];
-        let flags = u64::from(look.two_sided) | u64::from(look.unlit) << 1;
+        let flags = [look.two_sided, look.unlit, look.colored].map(u64::from);
         let numbers = colors.into_iter().flatten().chain([exponent, look.opacity]);
         // Bits instead of floats make the key hashable and exact.
         let map = |kind, Texture { picture, wrap, offset, scale, .. }: &Texture, gain: f64| {
@@ -102,7 +104,7 @@ impl Key {
         let bits = |numbers: &Vec<f64>| numbers.iter().map(|x| x.to_bits()).collect();
         Self {
             name: look.name.clone(),
-            numbers: numbers.map(f64::to_bits).chain([flags]).collect(),
+            numbers: numbers.map(f64::to_bits).chain(flags).collect(),
             undrawn: look.undrawn.iter().map(|(word, of)| (*word, bits(of))).collect(),
             maps: texture.chain(maps).collect(),
         }
@@ -178,7 +180,7 @@ impl Looks {
             material.emission = [0.0; 3];
         }
         let is_mapped = maps == Maps::Kept;
-        let texture = shown.texture.filter(|_| is_mapped).cloned();
+        let texture = shown.texture.filter(|_| is_mapped);
         let is_painted = texture.is_some() || (has_colors(object) && self.detail == Detail::Gltf);
         let is_nameless = of_file && file.is_none();
         let map = |kind: MapKind| {
@@ -190,7 +192,8 @@ impl Looks {
             base: if is_nameless && is_painted { tint } else { material.diffuse },
             material,
             opacity: shown.opacity,
-            texture,
+            texture: texture.cloned(),
+            colored: shown.shows_colors_with(texture),
             two_sided: self.detail == Detail::Gltf && object.is_two_sided(),
             unlit: shown.unlit || is_bare,
             maps: MapKind::ALL.into_iter().filter_map(map).collect(),

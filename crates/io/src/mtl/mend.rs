@@ -11,6 +11,10 @@ use marraztu_core::scene::{FileMaterial, MapKind, Material, SurfaceMaps, Texture
 /// The largest exponent derived from roughness: files rarely exceed 1000.
 const NARROWEST: f64 = 1000.0;
 
+/// In files with other colours, whole colours are bytes only if one exceeds this number. Lamps have
+/// 5 to 50.
+const BYTES_AMONG_OTHERS_ABOVE: f64 = 100.0;
+
 impl Statements {
     /// Returns the material, with missing and invalid values replaced.
     pub(super) fn mended(
@@ -41,14 +45,17 @@ impl Statements {
         if self.illumination.is_some_and(|model| ![0.0, 1.0, 2.0].contains(&model)) {
             note(FindingKind::Illumination);
         }
-        let unlit = self.illumination == Some(0.0);
-        // Exporters write it for surfaces with baked light, but some for all surfaces.
-        if unlit && self.map.is_none() && !self.is_own {
-            note(FindingKind::Unlit);
+        // Exporters write `illum 0` for textures that include light, but some for all materials.
+        let is_constant = self.illumination == Some(0.0);
+        let unlit = is_constant && (texture.is_some() || self.is_own);
+        if is_constant && !unlit {
+            note(FindingKind::MendedConstant);
         }
+        // Scans have vertex colours and a texture made from the same photographs.
+        let multiplies_colors = texture.is_none();
         let material = Material { ambient, diffuse, specular, exponent, emission };
         let (name, undrawn) = (self.name, self.undrawn);
-        FileMaterial { name, material, opacity, texture, maps, unlit, undrawn }
+        FileMaterial { name, material, opacity, texture, maps, unlit, multiplies_colors, undrawn }
     }
 
     /// Emission may exceed 1, but not fall below 0.
@@ -133,12 +140,6 @@ impl Statements {
         }
     }
 
-    /// Returns the numbers of Ka, Kd and Ks.
-    fn numbers_of_colors(&mut self) -> impl Iterator<Item = &mut f64> {
-        let Self { ambient, diffuse, specular, .. } = self;
-        [ambient, diffuse, specular].into_iter().flatten().flatten()
-    }
-
     /// Returns occlusion, roughness and metalness, if Ks holds them.
     fn packed(&self) -> Option<[f64; 3]> {
         self.specular.filter(|_| self.is_packed)
@@ -146,6 +147,11 @@ impl Statements {
 
     fn mended_opacity(&self, note: &mut dyn FnMut(FindingKind)) -> f64 {
         let given = self.opacity.or_else(|| self.transparency.map(|x| 1.0 - x)).unwrap_or(1.0);
+        // An invisible material would have `Tr 1`.
+        if given == 0.0 && self.transparency == Some(0.0) && !self.is_own {
+            note(FindingKind::MendedContradiction);
+            return 1.0;
+        }
         // Some exporters write the opacity to the map alone.
         if given == 0.0 && self.maps.contains_key(&MapKind::Opacity) && !self.is_own {
             note(FindingKind::MendedDissolve);
@@ -182,18 +188,49 @@ fn clamped(color: [f64; 3], note: &mut dyn FnMut(FindingKind)) -> [f64; 3] {
     within
 }
 
-/// Divides the colours of all materials by 255 if they are bytes: if all are whole numbers, and one
-/// of a Kd or Ks exceeds [`BYTES_ABOVE`]. A large Ka alone is a lamp.
+/// Divides colours that are bytes by 255. Colours up to 1 are kept: white is `1 1 1` in many files
+/// of bytes, too.
+///
+/// Kd decides whether a file has bytes. Ks may have bytes alone, but a large Ka alone is a lamp.
 pub(super) fn scale_bytes(materials: &mut [Statements], findings: &mut Findings) {
-    let is_large = |x: &f64| *x > BYTES_ABOVE;
-    let reflects =
-        |it: &Statements| [it.diffuse, it.specular].iter().flatten().flatten().any(is_large);
-    let is_whole = |x: &mut f64| x.fract() == 0.0;
-    if !materials.iter().any(reflects)
-        || !materials.iter_mut().flat_map(Statements::numbers_of_colors).all(is_whole)
-    {
-        return;
+    let are_bytes =
+        |color: fn(&Statements) -> Option<[f64; 3]>| has_bytes(materials.iter().filter_map(color));
+    let diffuse = are_bytes(|it| it.diffuse);
+    let specular = diffuse || are_bytes(|it| it.specular);
+    let emission = diffuse && are_bytes(|it| it.emission);
+    for it in materials {
+        let colors = [
+            (&mut it.ambient, diffuse),
+            (&mut it.diffuse, diffuse),
+            (&mut it.specular, specular),
+            (&mut it.emission, emission),
+        ];
+        let bytes = colors.into_iter().filter(|(_, are_bytes)| *are_bytes);
+        let bytes: Vec<_> =
+            bytes.filter_map(|(color, _)| color.as_mut()).filter(|it| is_bytes(it)).collect();
+        if !bytes.is_empty() {
+            findings.add(FindingKind::MendedBytes, &it.name, Some(it.line));
+        }
+        bytes.into_iter().for_each(|color| *color = color.map(|x| x / 255.0));
     }
-    findings.add(FindingKind::MendedBytes, "", None);
-    materials.iter_mut().flat_map(Statements::numbers_of_colors).for_each(|x| *x /= 255.0);
+}
+
+/// Returns whether the colours of a file include bytes. Next to other colours, small whole numbers
+/// are lamps.
+fn has_bytes(colors: impl Iterator<Item = [f64; 3]>) -> bool {
+    let (mut most, mut has_others) = (0.0, false);
+    for color in colors {
+        if is_bytes(&color) {
+            most = color.into_iter().fold(most, f64::max);
+        } else {
+            has_others |= color != [0.0; 3];
+        }
+    }
+    most > if has_others { BYTES_AMONG_OTHERS_ABOVE } else { BYTES_ABOVE }
+}
+
+/// Returns whether a colour above 1 has whole numbers from 0 to 255.
+fn is_bytes(color: &[f64; 3]) -> bool {
+    let is_byte = |x: &f64| x.fract() == 0.0 && (0.0..=255.0).contains(x);
+    color.iter().all(is_byte) && color.iter().any(|x| *x > 1.0)
 }

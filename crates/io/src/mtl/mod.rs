@@ -61,14 +61,14 @@ pub(super) struct Library<'a> {
     textures: BTreeMap<(PathBuf, bool, [u64; 4]), Shared<Texture>>,
 }
 
-/// The origin of a material, and the source of its opacity.
+/// The origin of a material.
 #[derive(Debug)]
 struct Origin {
     /// The index of the file's findings.
     file: usize,
     line: u32,
-    /// Whether the material is fully transparent only because of `Tr 1`.
-    hidden_by_tr: bool,
+    /// Whether this program has written the file.
+    is_own: bool,
 }
 
 /// The statements of a material.
@@ -164,19 +164,23 @@ impl<'a> Library<'a> {
     /// Returns the materials and all findings. `used` are the indices of the materials that the
     /// model uses.
     ///
-    /// Some programs write `Tr 1` for opaque materials. It is ignored if it would hide every used
-    /// material.
+    /// Some programs write `Tr 1` or `d 0` for opaque materials. Both are ignored if they would
+    /// hide every used material.
     pub(super) fn finish(mut self, used: &BTreeSet<u32>) -> (Vec<FileMaterial>, Vec<Finding>) {
-        let hidden = |place: &u32| self.origins[*place as usize].hidden_by_tr;
-        let other_convention = !used.is_empty() && used.iter().all(hidden);
+        let is_hidden = |place: &u32| {
+            let place = *place as usize;
+            self.materials[place].opacity == 0.0 && !self.origins[place].is_own
+        };
+        let hides_all = !used.is_empty() && used.iter().all(is_hidden);
         for (material, origin) in self.materials.iter_mut().zip(&self.origins) {
-            let kind = if other_convention && origin.hidden_by_tr {
+            if material.opacity != 0.0 {
+                continue;
+            }
+            let kind = if hides_all && !origin.is_own {
                 material.opacity = 1.0;
                 FindingKind::MendedTransparency
-            } else if material.opacity == 0.0 {
-                FindingKind::Transparent
             } else {
-                continue;
+                FindingKind::Transparent
             };
             self.findings[origin.file].add(kind, &material.name, Some(origin.line));
         }
@@ -210,12 +214,13 @@ impl<'a> Library<'a> {
         });
         let mut maps: SurfaceMaps = maps.collect();
         self.settle_bumps(&mut maps, &statements, findings);
+        statements.settle_opacity(texture.as_deref(), &mut maps, findings);
         let place = u32::try_from(self.materials.len()).unwrap_or(NONE);
         self.places.insert(statements.name.clone(), place);
         self.origins.push(Origin {
             file: self.findings.len(),
             line: statements.line,
-            hidden_by_tr: statements.opacity.is_none() && statements.transparency == Some(1.0),
+            is_own: statements.is_own,
         });
         self.materials.push(statements.mended((texture, maps), findings));
     }
@@ -300,15 +305,15 @@ impl<'a> Library<'a> {
                 }
                 Some(picture)
             }
+            Err(LoadError::File { file, reason }) if reason == LFS_POINTER => {
+                note(FindingKind::TexturePointer, &file);
+                None
+            }
             Err(error) => {
                 note(FindingKind::TextureUnreadable, &error.to_string());
                 None
             }
         }
-            Err(LoadError::File { file, reason }) if reason == LFS_POINTER => {
-                note(FindingKind::TexturePointer, &file);
-                None
-            }
     }
 }
 
@@ -376,6 +381,22 @@ impl Statements {
         }
         if !is_read {
             note(FindingKind::MtlNumber);
+        }
+    }
+
+    /// Removes an opacity map that is the picture of the texture, if that has no alpha. Its alpha is
+    /// meant, not the brightness of its colours.
+    fn settle_opacity(
+        &self,
+        texture: Option<&Texture>,
+        maps: &mut SurfaceMaps,
+        findings: &mut Findings,
+    ) {
+        let (Some(texture), Some(map)) = (texture, maps.get(&MapKind::Opacity)) else { return };
+        let is_same = Shared::same(&texture.picture, &map.texture.picture);
+        if is_same && texture.picture.least_alpha() == 255 && !self.is_own {
+            maps.remove(&MapKind::Opacity);
+            findings.add(FindingKind::MapOpaque, &self.name, Some(self.line));
         }
     }
 
@@ -467,7 +488,7 @@ mod tests {
     fn each_nonsense_is_mended_by_its_rule_and_listed() {
         use FindingKind::*;
         type Row = (&'static str, FindingKind, fn(&FileMaterial) -> bool);
-        let rows: [Row; 14] = [
+        let rows: [Row; 15] = [
             ("Kd .5 .5 .5\nKs 0 0 0", MendedAmbient, |m| m.material.ambient == [0.1; 3]),
             ("Ka 1 1 1\nKd .5 .5 .5\nKs 0 0 0", MendedAmbient, |m| m.material.ambient == [0.1; 3]),
             ("Ka .5 0 0\nKd .5 0 0\nKs 0 0 0", MendedAmbient, |m| {
@@ -485,8 +506,9 @@ mod tests {
             ("Ka 0 0 0\nKd 1 -1 9\nKs 0 0 0", MendedRange, |m| {
                 m.material.diffuse == [1.0, 0.0, 1.0]
             }),
-            ("Ka 0 0 0\nKd 1 1 1\nKs 0 0 0\nd 0", Transparent, |m| m.opacity == 0.0),
-            ("Ka 0 0 0\nKd 1 1 1\nKs 0 0 0\nillum 0", Unlit, |m| m.unlit),
+            ("Ka 0 0 0\nKd 1 1 1\nKs 0 0 0\nd 0", MendedTransparency, |m| m.opacity == 1.0),
+            ("Ka 0 0 0\nKd 1 1 1\nKs 0 0 0\nd 0\nTr 0", MendedContradiction, |m| m.opacity == 1.0),
+            ("Ka 0 0 0\nKd 1 1 1\nKs 0 0 0\nillum 0.0", MendedConstant, |m| !m.unlit),
             ("Ka 0 0 0\nKd 1 1 1\nKs 0 0 0\nmap_Kd -o 1 1 1", MapUnnamed, |m| m.texture.is_none()),
         ];
         for (text, opacity) in [("Tr 0.75", 0.25), ("d 0.75", 0.75), ("d 0.01\nTr 0.5", 0.01)] {
@@ -502,23 +524,49 @@ mod tests {
         }
     }
 
+    /// The colours Kd and Ks of materials after bytes are scaled, and the number of those materials.
+    fn scaled(text: &str) -> (Vec<[f64; 3]>, usize) {
+        let mut findings = Findings::new("a.mtl");
+        let mut materials = read_statements(text.as_bytes(), &mut findings);
+        scale_bytes(&mut materials, &mut findings);
+        let colors = materials.iter().flat_map(|it| [it.diffuse, it.specular]).flatten();
+        (colors.collect(), findings.into_list().iter().map(|finding| finding.count).sum())
+    }
+
     #[test]
     fn whole_numbers_above_16_are_bytes_and_other_colors_above_1_are_clamped() {
-        let read = |text: &str| {
-            let mut findings = Findings::new("a.mtl");
-            let mut materials = read_statements(text.as_bytes(), &mut findings);
-            scale_bytes(&mut materials, &mut findings);
-            let colors: Vec<_> = materials.iter().filter_map(|it| it.diffuse).collect();
-            (colors, !findings.into_list().is_empty())
-        };
-        let bytes = "newmtl a\nKd 255 51 0\nKs 0 0 0\nnewmtl b\nKd 1 0 0\n";
-        assert_eq!(read(bytes), (vec![[1.0, 0.2, 0.0], [1.0 / 255.0, 0.0, 0.0]], true));
-        for bright in ["newmtl a\nKd 2 1 0\n", "newmtl a\nKd 40.5 0 0\n", "newmtl a\nKd 16 16 16\n"]
-        {
-            assert!(!read(bright).1, "{bright}");
+        let bytes = "newmtl a\nKd 255 51 0\nKs 0 51 0\nnewmtl b\nKd 3 0 0\n";
+        assert_eq!(
+            scaled(bytes),
+            (vec![[1.0, 0.2, 0.0], [0.0, 0.2, 0.0], [3.0 / 255.0, 0.0, 0.0]], 2)
+        );
+        assert_eq!(scaled("newmtl a\nKd 51 51 51\nnewmtl b\nKd 0 0 0\n").0[0], [0.2; 3]);
+        for bright in [
+            "newmtl a\nKd 2 1 0\n",
+            "newmtl a\nKd 40.5 0 0\n",
+            "newmtl a\nKd 16 16 16\n",
+            "newmtl a\nKd 780 780 780\n",
+            "newmtl light\nKa 20 20 20\nKd 1 1 1\nnewmtl red\nKd 1 0 0\n",
+        ] {
+            assert_eq!(scaled(bright).1, 0, "{bright}");
         }
-        let lamp = "newmtl light\nKa 20 20 20\nKd 1 1 1\nnewmtl red\nKd 1 0 0\n";
-        assert_eq!(read(lamp), (vec![[1.0; 3], [1.0, 0.0, 0.0]], false));
+    }
+
+    #[test]
+    fn a_lamp_changes_no_other_material_and_bytes_leave_colours_up_to_1() {
+        for lamp in ["30 27 11", "50 50 50", "17 12 4", "400 400 400"] {
+            for other in ["1 1 1", "1 0 0", "0.8 0.8 0.8"] {
+                let text = format!("newmtl a\nKd {other}\nnewmtl l\nKd {lamp}\n");
+                assert_eq!(scaled(&text).1, 0, "{text}");
+            }
+        }
+        let white = scaled("newmtl a\nKd 255 102 0\nnewmtl b\nKd 1 1 1\nKs 1 0 0\n");
+        assert_eq!(white, (vec![[1.0, 0.4, 0.0], [1.0; 3], [1.0, 0.0, 0.0]], 1));
+        let dull = scaled("newmtl a\nKd 51 51 51\nKs 0.5 0.5 0.5\n");
+        assert_eq!(dull, (vec![[0.2; 3], [0.5; 3]], 1));
+        // One lamp above 255 does not turn the other colours white.
+        let lit = scaled("newmtl a\nKd 204 102 51\nnewmtl l\nKd 500 500 500\n");
+        assert_eq!(lit, (vec![[0.8, 0.4, 0.2], [500.0; 3]], 1));
     }
 
     #[test]

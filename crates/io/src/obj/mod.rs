@@ -47,8 +47,8 @@ use super::read;
 use super::stl::{self, is_stl};
 use super::texture::{Pictures, texture_endings};
 use marraztu_core::scene::{
-    CornerLists, FileMaterial, LoadOptions, Mesh, MeshSource, Model, Part, Scale, Smoothing,
-    Texture, UpAxis, Winding, dvec3, newell, split_positions,
+    Corner, CornerLists, FileMaterial, LoadOptions, Mesh, MeshSource, Model, Part, Scale,
+    Smoothing, Texture, UpAxis, Winding, dvec3, newell, split_positions,
 };
 
 /// The error for a file without content.
@@ -167,7 +167,8 @@ fn model(
     if content.parts.iter().all(|part| part.names.material.is_none()) {
         findings.note_all(FindingKind::MaterialsUnused, library.count(), None);
     }
-    // Finishing the library decides how `Tr 1` is read, which depends on the used materials.
+    // Finishing the library decides how `Tr 1` and `d 0` are read, which depends on the used
+    // materials.
     let companions = library.files();
     let (materials, of_materials) = library.finish(&used);
     let edge_color = content.edge_color;
@@ -189,6 +190,7 @@ fn model(
         findings.note_all(FindingKind::VertexUnused, mesh.unused_vertices().len(), None);
     }
     note_unmapped(&mesh, &materials, &mut findings);
+    note_replaced_colors(&mesh, &materials, &mut findings);
     progress.reached(1, 1)?;
 
     let model = Model::of_mesh(&model_name(file), mesh);
@@ -217,11 +219,11 @@ fn no_obj(bytes: &[u8], whole: bool) -> Option<String> {
     if whole && bytes.trim_ascii().is_empty() {
         return Some(EMPTY.to_owned());
     }
-    for (begin, what) in known {
-        if bytes.starts_with(begin) {
     if read::is_lfs_pointer(bytes) {
         return Some(LFS_POINTER.to_owned());
     }
+    for (begin, what) in known {
+        if bytes.starts_with(begin) {
             return Some(format!("this is not an OBJ file but {what}"));
         }
     }
@@ -334,9 +336,9 @@ fn own_library(
 
 /// Names the parts after their groups, objects or materials.
 fn named_parts(parts: &[NamedPart], library: &Library<'_>, findings: &mut Findings) -> Vec<Part> {
+    let mut unknown = BTreeSet::new();
     let named = |(i, part): (usize, &NamedPart)| {
         let names = &part.names;
-    let mut unknown = BTreeSet::new();
         let material = names.material.as_deref().and_then(|name| {
             let place = library.place(name);
             if place.is_none() && !name.is_empty() && unknown.insert(name.to_owned()) {
@@ -458,14 +460,36 @@ fn note_unmapped(mesh: &Mesh, materials: &[FileMaterial], findings: &mut Finding
         *is_used = true;
         *is_mapped = *is_mapped || mesh.has_uvs(polygon);
     }
+    let mut noted = BTreeSet::new();
     for (part, seen) in mesh.parts().iter().zip(seen) {
         if let ([true, false], Some((material, texture))) = (seen, texture(part))
             && noted.insert(part.material)
         {
-    let mut noted = BTreeSet::new();
             let name = format!("{} of material \"{}\"", short_name(&texture.source), material.name);
             findings.add(FindingKind::TextureUnmapped, &name, None);
         }
+    }
+}
+
+/// Notes vertex colours other than white that textures replace.
+fn note_replaced_colors(mesh: &Mesh, materials: &[FileMaterial], findings: &mut Findings) {
+    if mesh.colors().is_empty() {
+        return;
+    }
+    let texture = |material: u32| materials.get(material as usize)?.texture.as_ref();
+    let of_part: Vec<Option<u32>> =
+        mesh.parts().iter().map(|part| part.material.filter(|it| texture(*it).is_some())).collect();
+    let mut replaced = BTreeSet::new();
+    for (polygon, part) in (0..).zip(mesh.polygon_parts()) {
+        let Some(material) = of_part[*part as usize] else { continue };
+        let white = |corner: &Corner| mesh.colors()[corner.position as usize] == [1.0; 3];
+        if mesh.has_uvs(polygon) && !replaced.contains(&material) {
+            let is_colored = !mesh.polygon(polygon).iter().all(white);
+            replaced.extend(is_colored.then_some(material));
+        }
+    }
+    for material in replaced {
+        findings.add(FindingKind::ColorTextured, &materials[material as usize].name, None);
     }
 }
 

@@ -320,8 +320,10 @@ fn vertex_colors(it: &Facts<'_>) -> EffectState {
         "edges only"
     } else if it.object.surface == Surface::Material {
         "only the material is shown"
-    } else {
+    } else if it.object.model.mesh.colors().is_empty() {
         "the file has none"
+    } else {
+        "a texture replaces them"
     };
     any(it, |shaded| shaded.vertex_colors, "").unwrap_or(EffectState::left_out(left_out))
 }

@@ -54,6 +54,7 @@ impl Planner<'_> {
         let mesh = &object.model.mesh;
         let rules = into.plan.rules;
         let texture = look.texture.filter(|_| !mesh.uvs().is_empty());
+        let shows_colors = look.shows_colors_with(texture) && !mesh.colors().is_empty();
         // If rules are ignored, a white texture must give the same bytes as no texture.
         let texture = match rules.texture(texture.map(|texture| &**texture)) {
             Some(_) => None,
@@ -77,7 +78,7 @@ impl Planner<'_> {
             tint = std::array::from_fn(|i| tint[i] * lit.material.diffuse[i]);
         }
         let shaded = Shaded {
-            vertex_colors: colored && !mesh.colors().is_empty(),
+            vertex_colors: colored && shows_colors,
             tint,
             texture: texture.cloned(),
             cutout: match cover {
