@@ -33,7 +33,7 @@ struct Reading {
     up: Option<String>,
     scale: f64,
     flip_winding: bool,
-    crease: f64,
+    crease: Option<f64>,
     bump_maps: String,
 }
 
@@ -71,7 +71,7 @@ impl Reading {
             up,
             scale: scale.ok_or_else(|| Failure::value("scale is a finite number above 0"))?,
             winding: if self.flip_winding { Winding::Turned } else { Winding::Kept },
-            crease: crease(self.crease)?,
+            crease: self.crease.map_or_else(|| Ok(io::usual_crease(path)), crease)?,
             bumps,
         })
     }

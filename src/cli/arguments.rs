@@ -119,8 +119,8 @@ pub(crate) struct Reading {
     /// Reverse the winding of all polygons, for files with clockwise front faces
     #[arg(long)]
     flip_winding: bool,
-    /// The largest angle in degrees between two faces with a smooth edge, if the file has neither
-    /// normals nor smoothing groups: 60*; 0 for flat faces, 180 to smooth all
+    /// Edges between two faces are smooth below this angle in degrees, if the file has neither
+    /// normals nor smoothing groups: 60*, and 0 for STL; 0 for flat faces, 180 to smooth all
     #[arg(long, value_name = "DEGREES", value_parser = crease)]
     crease: Option<Crease>,
     /// How to read the pictures of `bump` statements: heights, normals, auto* (detected)
@@ -281,11 +281,12 @@ impl Reading {
     /// Returns the load options for a file or for standard input.
     pub(crate) fn options(&self, file: &Path, input: Option<&Input>) -> LoadOptions {
         let usual_up = || input.map_or_else(|| io::usual_up(file), Input::usual_up);
+        let usual_crease = || input.map_or_else(|| io::usual_crease(file), Input::usual_crease);
         LoadOptions {
             up: self.up.unwrap_or_else(usual_up),
             scale: self.scale.unwrap_or_default(),
             winding: if self.flip_winding { Winding::Turned } else { Winding::Kept },
-            crease: self.crease.unwrap_or_default(),
+            crease: self.crease.unwrap_or_else(usual_crease),
             bumps: self.bump_maps.unwrap_or_default(),
         }
     }

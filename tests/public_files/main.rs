@@ -18,6 +18,7 @@ mod coordinates;
 mod findings;
 mod outputs;
 mod spelling;
+mod stl;
 
 /// A unit square in the plane z = 0, with texture coordinates and the material `m`.
 const SQUARE: &str = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\n\

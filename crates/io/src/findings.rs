@@ -114,6 +114,11 @@ impl Findings {
         }
     }
 
+    /// Returns the number of cases of a kind without names.
+    pub(super) fn count(&self, kind: FindingKind) -> usize {
+        self.cases.get(&(kind, String::new())).map_or(0, |cases| cases.count)
+    }
+
     /// Notes the closed bodies of a mesh that are inside out.
     pub(super) fn note_inside_out(&mut self, mesh: &Mesh) {
         let ClosedBodies { all, inside_out } = mesh.closed_bodies();

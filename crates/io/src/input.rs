@@ -9,9 +9,9 @@ use super::packed::{MAGIC, Unpacked};
 use super::progress::Progress;
 use super::read::open as open_file;
 use super::scene_file::{Opened, SceneFileError, open_text};
-use super::stl::has_stl_content;
+use super::stl::{crease_of, has_stl_content};
 use super::up_axis::{stated_in, stated_or_usual};
-use marraztu_core::scene::{LoadOptions, UpAxis};
+use marraztu_core::scene::{Crease, LoadOptions, UpAxis};
 
 /// The name of the input in messages and in the outline.
 const NAME: &str = "standard input";
@@ -78,6 +78,11 @@ impl Input {
     pub fn usual_up(&self) -> UpAxis {
         let is_stl = || has_stl_content(&self.bytes, self.bytes.len());
         stated_or_usual(stated_in(&self.bytes), is_stl)
+    }
+
+    /// Returns the crease angle to read the model with: flat for STL, or the default.
+    pub fn usual_crease(&self) -> Crease {
+        crease_of(has_stl_content(&self.bytes, self.bytes.len()))
     }
 
     /// Parses the input as a model.

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 CREASE = math.radians(60)
-"""The largest angle between two faces with a smooth edge, unless the mesh has normals."""
+"""Edges between faces are smooth below this angle, unless the mesh has normals."""
 
 
 class FindingWarning(UserWarning):
@@ -38,7 +38,7 @@ class Mesh:
     left of the texture, and `colors` (n, 3) or (n, 4), which are integers from 0 to 255 or floats
     from 0 to 1; alpha is ignored. `texture` is a picture file, an array of bytes (height, width, 3
     or 4), or a picture of PIL. `material` is a `Material` or the name of one. Without normals,
-    edges between faces are smooth up to the angle `crease` in radians; 0 gives flat faces.
+    edges between faces are smooth below the angle `crease` in radians; 0 gives flat faces.
     """
 
     __slots__ = ("_mesh",)
@@ -91,15 +91,15 @@ class Mesh:
         up: str | None = None,
         scale: float = 1.0,
         flip_winding: bool = False,
-        crease: float = CREASE,
+        crease: float | None = None,
         bump_maps: str = "auto",
     ) -> Mesh:
         """Loads an .obj, .obj.gz or .stl file, with its MTL files and textures.
 
         `up` is the axis of the file that points up: x, y, z, -x, -y or -z; by default the axis
         stated in its comments, z for STL, or y. `crease` is in radians, and used if the file has
-        neither normals nor smoothing groups. Repairs are warnings (`FindingWarning`) and in
-        `findings`.
+        neither normals nor smoothing groups; by default `CREASE`, and 0 for STL. Repairs are
+        warnings (`FindingWarning`) and in `findings`.
 
         Raises `LoadError` with `file`, `line` and `reason`.
         """

@@ -119,7 +119,11 @@ impl App {
         let usual = self.state.up;
         self.begin_loading(ctx, label, asks, move |progress| {
             let (up, _) = usual_up(&path, usual);
-            let options = if chosen { wish.options } else { LoadOptions { up, ..wish.options } };
+            let options = if chosen {
+                wish.options
+            } else {
+                LoadOptions { up, crease: io::usual_crease(&path), ..wish.options }
+            };
             let result = io::load(&path, &options, progress).and_then(|mut loaded| {
                 let mut load = |path| io::load_texture_with(path, &mut loaded.findings);
                 let texture = wish.texture.as_deref().map(&mut load).transpose()?;

@@ -214,7 +214,8 @@ fn read_all(
 
 fn arrived(path: &Path, usual: UpAxis, progress: &Progress) -> Result<Arrived, LoadError> {
     let (up, why) = usual_up(path, usual);
-    let options = LoadOptions { up, ..LoadOptions::default() };
+    let crease = io::usual_crease(path);
+    let options = LoadOptions { up, crease, ..LoadOptions::default() };
     let loaded = io::load(path, &options, progress)?;
     let said = opened(&loaded);
     let said = why.map_or_else(|| said.clone(), |why| format!("{said}. {why}"));

@@ -2,7 +2,8 @@
 //!
 //! Positions are in world space, since the format has no transforms. Polygons keep their corners; a
 //! mirrored object gets them in reverse order, which keeps its front faces in front. The numbers of
-//! an object with the identity transform equal those of its file, bit for bit.
+//! an object with the identity transform equal those of its file, bit for bit. This holds for STL
+//! files, too: if all objects come from such files, z is up in the export.
 //!
 //! The statements `o`, `g` and `usemtl` of a file survive unchanged ([`called`]).
 
@@ -10,6 +11,7 @@ mod called;
 mod mtl;
 
 use std::fmt::Write;
+use std::ops::Neg;
 
 use glam::{DMat3, DMat4, DVec3};
 
@@ -17,8 +19,9 @@ use self::called::Names;
 use super::look::{Detail, Looks, has_colors, polygons};
 use super::names::companion;
 use super::{Content, SIGNATURE};
+use crate::stl::has_stl_name;
 use marraztu_core::base::math::{normal_matrix, unit};
-use marraztu_core::scene::{Corner, NONE, Object, Scene, View, dvec3};
+use marraztu_core::scene::{Corner, NONE, Object, Scene, UpAxis, View, dvec3};
 
 /// An object counts as far if its distance from the origin exceeds this multiple of its radius.
 const FAR: f64 = 256.0;
@@ -28,6 +31,8 @@ struct Writer {
     text: String,
     looks: Looks,
     names: Names,
+    /// The axis that points up in the file: Y or Z.
+    up: UpAxis,
     /// The number of positions written so far; texture coordinates and normals follow.
     positions: usize,
     uvs: usize,
@@ -38,10 +43,13 @@ struct Writer {
 pub(super) fn written(stem: &str, scene: &Scene, view: &View) -> Result<Content, String> {
     let objects = scene.objects.iter().map(|(_, object)| object);
     let visible: Vec<&Object> = objects.filter(|object| object.visible).collect();
+    let up = up_axis(&visible);
+    let turned = visible.iter().filter(|it| it.model.options.up != up).count();
     let mut writer = Writer {
         text: String::new(),
         looks: Looks::new(Detail::Mtl),
         names: Names::new(visible.len()),
+        up,
         positions: 0,
         uvs: 0,
         normals: 0,
@@ -52,6 +60,14 @@ pub(super) fn written(stem: &str, scene: &Scene, view: &View) -> Result<Content,
     // The head comes last, since only now is it known whether there are materials.
     let mut content = Content::default();
     let mut head = String::from(SIGNATURE);
+    if up != UpAxis::default() {
+        let _ = writeln!(head, "# up axis: {}", up.word());
+        content.notes.push(format!("{} is up in the OBJ file, as in the STL files", up.word()));
+    } else if turned > 0 {
+        let note =
+            format!("y is up in the OBJ file: models with another up axis are turned: {turned}");
+        content.notes.push(note);
+    }
     if !writer.looks.all.is_empty() {
         let stem = companion(stem);
         let _ = writeln!(head, "mtllib {stem}.mtl");
@@ -84,7 +100,8 @@ impl Writer {
             let _ = writeln!(self.text, "vt {u} {v}");
         }
         for point in &normals.used {
-            let [x, y, z] = turned(&turn, mesh.points()[*point as usize].normal);
+            let normal = turned(&turn, mesh.points()[*point as usize].normal);
+            let [x, y, z] = axes(self.up, normal);
             let _ = writeln!(self.text, "vn {x} {y} {z}");
         }
 
@@ -124,7 +141,7 @@ impl Writer {
         let is_far = is_far(object, time);
         for position in &positions.used {
             let place = mesh.positions()[*position as usize];
-            place_to(&mut self.text, &world_from_mesh, place, is_far);
+            place_to(&mut self.text, &world_from_mesh, (place, is_far), self.up);
             let _ = match colors.get(*position as usize) {
                 Some([r, g, b]) => writeln!(self.text, " {r} {g} {b}"),
                 None => writeln!(self.text),
@@ -172,16 +189,39 @@ fn is_far(object: &Object, time: f64) -> bool {
         || sphere.is_some_and(|(centre, radius)| centre.length() > FAR * radius)
 }
 
+/// Returns the axis that points up in the file: Z if all objects come from STL files with Z up, or
+/// else Y.
+fn up_axis(objects: &[&Object]) -> UpAxis {
+    let is_stl = |object: &&Object| {
+        let model = &object.model;
+        model.options.up == UpAxis::Z && model.source.as_deref().is_some_and(has_stl_name)
+    };
+    let are_all = !objects.is_empty() && objects.iter().all(is_stl);
+    if are_all { UpAxis::Z } else { UpAxis::Y }
+}
+
+/// Returns the numbers in the file of a position or direction of the world.
+fn axes<T: Copy + Neg<Output = T>>(up: UpAxis, [x, y, z]: [T; 3]) -> [T; 3] {
+    // UpAxis::Z turns (x, y, z) of the file to (x, z, -y).
+    if up == UpAxis::Z { [x, -z, y] } else { [x, y, z] }
+}
+
 /// Writes a position in world space. The identity transform keeps the bits of the file.
-fn place_to(text: &mut String, world_from_mesh: &DMat4, position: [f32; 3], is_far: bool) {
+fn place_to(
+    text: &mut String,
+    world_from_mesh: &DMat4,
+    (position, is_far): ([f32; 3], bool),
+    up: UpAxis,
+) {
     let place = world_from_mesh.transform_point3(dvec3(position));
     let _ = if *world_from_mesh == DMat4::IDENTITY {
-        let [x, y, z] = position;
+        let [x, y, z] = axes(up, position);
         write!(text, "v {x} {y} {z}")
     } else if is_far {
-        write!(text, "v {} {} {}", place.x, place.y, place.z)
+        let [x, y, z] = axes(up, place.to_array());
+        write!(text, "v {x} {y} {z}")
     } else {
-        let [x, y, z] = place.as_vec3().to_array();
+        let [x, y, z] = axes(up, place.as_vec3().to_array());
         write!(text, "v {x} {y} {z}")
     };
 }
