@@ -17,7 +17,7 @@ use rayon::ThreadPoolBuildError;
 use super::LONGEST_SIDE;
 use crate::app::editor::App;
 use crate::app::editor::jobs::JobKind;
-use crate::app::state::Notice;
+use crate::app::state::{Notice, NoticeKind};
 use crate::app::tasks::do_waiting;
 use marraztu_io::{OwnFolders, Preferences};
 use marraztu_painter::{Canvas, WindowFrame, WindowPainter};
@@ -280,7 +280,7 @@ impl CanvasShell {
         do_waiting();
         // A scene that is being opened replaces the notices, too.
         if self.app.loading.is_empty() {
-            self.app.state.notices.extend(self.told.drain(..).map(Notice::new));
+            self.app.state.notices.extend(self.told.drain(..).map(|text| Notice::new(NoticeKind::Program, text)));
         }
         let mut input = self.input.take();
         input.time = Some(time);
