@@ -3,8 +3,8 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use marraztu_core::scene::{Model, Observer, Projection, Scene, View};
-use marraztu_io::{Input, Progress, describe, shape};
+use marraztu_core::scene::{Model, Observer, Projection, Scene, Shape, View};
+use marraztu_io::{Input, Progress, describe};
 
 use super::arguments::{Info, Reading};
 use super::failure::Failure;
@@ -55,7 +55,7 @@ fn model_text(model: &Model) -> String {
     if let (true, Some(file)) = (model.is_placeholder(), &model.source) {
         return format!("a box in place of the missing file {}", file.display());
     }
-    let kind = shape(model).map_or_else(String::new, |shape| format!("a {}, ", shape.name()));
+    let kind = Shape::of(model).map_or_else(String::new, |shape| format!("a {}, ", shape.name()));
     let (vertices, faces) = (model.mesh.positions().len(), model.mesh.polygon_count());
     format!("{kind}{vertices} vertices, {faces} faces")
 }

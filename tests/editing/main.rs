@@ -6,6 +6,7 @@
 mod common;
 
 mod aiming;
+mod amounts;
 mod arranging;
 mod desk;
 mod framing;
@@ -14,4 +15,5 @@ mod navigation;
 mod placement;
 mod selecting;
 mod several;
+mod shapes;
 mod transforming;

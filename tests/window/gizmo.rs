@@ -80,6 +80,19 @@ fn dragging_a_handle_moves_along_its_axis_in_one_step_named_with_the_distance() 
 }
 
 #[test]
+fn a_new_shape_moves_by_the_step_of_a_key_and_by_a_typed_number() {
+    let mut editor = with_ship();
+    editor.perform(Action::AddCube);
+    let before = place(&editor);
+    editor.press(Lower(Key::X));
+    assert_eq!(place(&editor), before + DVec3::X * 10.0);
+    editor.perform(Action::TypeAmount);
+    type_letters(&mut editor, "y60");
+    editor.press(Named(Key::Enter));
+    assert_eq!(place(&editor), before + DVec3::new(10.0, 60.0, 0.0));
+}
+
+#[test]
 fn numbers_are_typed_while_a_handle_is_held_and_enter_takes_them() {
     let mut editor = with_ship();
     let steps = editor.steps();

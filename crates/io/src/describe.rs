@@ -19,7 +19,7 @@ pub fn describe_model(model: &Model, findings: &[Finding]) -> String {
     if let Some(source) = &model.source {
         text.line("file", &source.display().to_string());
     }
-    if let Some(shape) = shape(model) {
+    if let Some(shape) = Shape::of(model) {
         text.line("shape", shape.name());
     }
     describe_options(model, &mut text);
@@ -39,11 +39,6 @@ pub fn describe_model(model: &Model, findings: &[Finding]) -> String {
         }
     }
     text.0
-}
-
-/// Returns the simple shape that a model was made from.
-pub fn shape(model: &Model) -> Option<Shape> {
-    Shape::named(&model.name).filter(|shape| shape.model().shares_file_with(model))
 }
 
 /// Lines of a label and its value.
@@ -84,7 +79,7 @@ fn describe_options(model: &Model, text: &mut Text) {
         options.push(format!("{} is up", up.word().to_uppercase()));
     }
     let scale = model.options.scale.get();
-    if (scale - 1.0).abs() > 0.0 {
+    if (scale - 1.0).abs() > 0.0 && model.source.is_some() {
         options.push(format!("scaled by {scale}"));
     }
     if model.options.winding == Winding::Turned {

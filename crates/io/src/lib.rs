@@ -50,7 +50,7 @@ mod window_state;
 pub use animation::{Animation, AnimationFormat, AnimationWriter};
 pub use assets::{cam_model, default_scene, empty_scene, own_model, own_texture};
 pub use companions::{Companion, companions};
-pub use describe::{describe, describe_model, shape};
+pub use describe::{describe, describe_model};
 pub use error::LoadError;
 pub use examples::{EXAMPLES, Example, is_example};
 pub use export::{EXPORT_ENDINGS, Exported, check_export_target, export};

@@ -14,12 +14,17 @@ pub fn world_box(object: &Object, time: f64) -> Option<Bounds> {
 /// Returns the height of the ground: of the highest visible and level ground or plane shape, else
 /// 0. Excludes `id`.
 pub fn ground(scene: &Scene, id: ObjectId) -> f64 {
-    let planes = scene.objects.iter().filter(|(other, object)| {
-        let up = object.placement.now().y_axis.truncate();
-        let is_level = up.x.abs().max(up.z.abs()) <= 1e-9 * up.y.abs();
-        *other != id && object.visible && steps::is_ground(object) && is_level
-    });
+    let planes = scene
+        .objects
+        .iter()
+        .filter(|(other, object)| *other != id && object.visible && is_level_ground(object));
     planes.map(|(_, plane)| plane.placement.now().w_axis.y).reduce(f64::max).unwrap_or(0.0)
+}
+
+/// Returns whether an object is a level ground or plane shape.
+pub(super) fn is_level_ground(object: &Object) -> bool {
+    let up = object.placement.now().y_axis.truncate();
+    steps::is_ground(object) && up.x.abs().max(up.z.abs()) <= 1e-9 * up.y.abs()
 }
 
 /// Moves the selected object up or down until its lowest point is at the height of the ground.

@@ -2,8 +2,11 @@
 //! and the meaning of an amount there.
 //!
 //! An amount is relative to the scene at the start of a drag, so rounding errors do not add up.
+//!
+//! Amounts count in units of the world, along or about the axes of the frame. The keys differ: in
+//! the local frame, `M := M T` counts in the units of the object, which its scale stretches.
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DMat4, DVec3};
 
 use super::{Change, GesturePhase, Refusal, aiming, set_transform, steps, transform};
 use crate::base::math::{self, Axis};
@@ -16,14 +19,14 @@ pub struct Pivot {
     pub kind: Transformation,
     /// The position of the handles in the world.
     pub origin: DVec3,
-    /// The frame's axes in the world, with the lengths of its units.
+    /// The frame's axes in the world, of length 1; 0 for an axis along which the object is flat.
     pub axes: DMat3,
 }
 
 /// The amount of a transformation, in the frame of a [`Pivot`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Amount {
-    /// A translation in units along each axis.
+    /// A translation along each axis, in units of the world.
     Move(DVec3),
     /// A rotation in radians about an axis, by the right-hand rule.
     Turn(DVec3, f64),
@@ -35,11 +38,6 @@ impl Pivot {
     /// Returns the direction of an axis in the world; `None` if the axis has length 0.
     pub fn direction(&self, axis: Axis) -> Option<DVec3> {
         math::unit(self.axes.col(axis.index()))
-    }
-
-    /// Returns the length of a unit along an axis, in world units.
-    pub fn unit(&self, axis: Axis) -> f64 {
-        self.axes.col(axis.index()).length()
     }
 
     /// Transforms a world vector into the frame; `None` if the frame is flat.
@@ -71,7 +69,7 @@ pub fn pivot(scene: &Scene, view: &View) -> Result<Pivot, Refusal> {
             let m = *object.placement.now();
             let origin = m.w_axis.truncate();
             Ok(match (view.frame, kind) {
-                (Frame::Local, _) => Pivot { kind, origin, axes: DMat3::from_mat4(m) },
+                (Frame::Local, _) => Pivot { kind, origin, axes: own_axes(&m) },
                 (Frame::Global, Transformation::Translation) => {
                     Pivot { kind, origin, axes: DMat3::IDENTITY }
                 }
@@ -105,30 +103,60 @@ pub fn pivot(scene: &Scene, view: &View) -> Result<Pivot, Refusal> {
     }
 }
 
+/// Returns the directions of an object's axes in the world.
+fn own_axes(placement: &DMat4) -> DMat3 {
+    let direction = |axis: Axis| {
+        let column = DMat3::from_mat4(*placement).col(axis.index());
+        math::unit(column).unwrap_or(DVec3::ZERO)
+    };
+    let [x, y, z] = Axis::ALL.map(direction);
+    DMat3::from_cols(x, y, z)
+}
+
 /// Transforms the selected item of the subject by an amount.
 ///
 /// # Errors
 /// If the item cannot be transformed in this way.
 pub fn transform(scene: &Scene, view: &View, amount: Amount, phase: GesturePhase) -> Change {
+    let is_own = view.subject == Subject::Object && view.frame == Frame::Local;
     match amount {
+        Amount::Move(delta) if is_own => {
+            change_own(scene, view, phase, |m, axes| Ok(translated(m, axes * delta)))
+        }
+        Amount::Turn(axis, radians) if is_own => change_own(scene, view, phase, |m, axes| {
+            // In a mirrored frame, turns run the other way in the world, as with the keys.
+            let hand = if axes.determinant() < 0.0 { -1.0 } else { 1.0 };
+            let turn = set_transform::turn(axes * axis, radians * hand)?;
+            Ok(math::placed(turn * DMat3::from_mat4(*m), m.w_axis.truncate()))
+        }),
         Amount::Move(delta) => transform::translate(scene, view, delta, phase),
         Amount::Turn(axis, radians) => transform::rotate(scene, view, axis, radians, phase),
         Amount::Scale(factors) => transform::stretch(scene, view, factors, phase),
     }
 }
 
-/// Rounds an amount to whole steps of the keys x, y and z.
+/// Changes the placement of the selected object; `to` also gets the directions of its axes.
+fn change_own(
+    scene: &Scene,
+    view: &View,
+    phase: GesturePhase,
+    to: impl FnOnce(&DMat4, DMat3) -> Result<DMat4, Refusal>,
+) -> Change {
+    let (id, object) = set_transform::selected_object(scene, view)?;
+    let m = object.placement.now();
+    set_transform::object(scene, view, id, to(m, own_axes(m))?, phase)
+}
+
+fn translated(m: &DMat4, by: DVec3) -> DMat4 {
+    DMat4 { w_axis: m.w_axis + by.extend(0.0), ..*m }
+}
+
+/// Rounds an amount to whole steps. A step of translation has its length in the world.
 pub fn snapped(scene: &Scene, view: &View, amount: Amount) -> Amount {
     match amount {
         Amount::Move(delta) => {
-            let along = Axis::ALL.map(|axis| {
-                let step = match view.subject {
-                    Subject::Object => transform::distance(scene, view, axis),
-                    Subject::Camera | Subject::Light => steps::length(scene, view),
-                };
-                to_multiple(delta[axis.index()], step)
-            });
-            Amount::Move(DVec3::from_array(along))
+            let step = steps::length(scene, view);
+            Amount::Move(delta.map(|along| to_multiple(along, step)))
         }
         Amount::Turn(axis, radians) => {
             let degrees = to_multiple(radians.to_degrees(), view.steps.rotation);

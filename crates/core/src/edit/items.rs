@@ -231,7 +231,7 @@ pub fn set_lens(scene: &Scene, id: CameraId, lens: Lens) -> Change {
 
 /// Returns the reason why a crease angle has no effect on a model; `None` if it has.
 pub fn why_no_crease(model: &Model, file_normals: bool) -> Option<&'static str> {
-    if Shape::named(&model.name).is_some_and(|shape| shape.model().shares_file_with(model)) {
+    if Shape::of(model).is_some() {
         Some("the shape has exact normals")
     } else if model.source.is_none() {
         Some("built-in models are always smooth")

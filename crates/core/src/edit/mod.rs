@@ -9,6 +9,7 @@ pub mod angles;
 pub mod arrange;
 pub mod copies;
 pub mod framing;
+mod free_place;
 mod gesture;
 pub mod gizmo;
 mod history;

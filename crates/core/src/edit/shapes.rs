@@ -1,28 +1,31 @@
-//! Adds built-in shapes, in a size that fits the scene.
+//! Adds built-in shapes, in a size and at a place that fit the view.
 
 use glam::{DMat4, DVec3};
 
+use super::free_place::Site;
 use super::items::insert_object;
-use super::steps::{extent, rounded};
+use super::steps::{extent_without_grounds, rounded};
+use crate::base::Shared;
 use crate::scene::{
-    Bounds, Command, MaterialChoice, Object, PresetId, Scene, Shape, Sides, Tracked, View,
+    Bounds, Command, MaterialChoice, Model, Object, PresetId, Scale, Scene, Shape, Sides, Tracked,
+    View,
 };
 
-/// The size of a shape in a scene without objects, since its camera is made for ships of this size.
-const ALONE: f64 = 100.0;
-
-/// Adds a shape at the centre of the world, about a fifth as large as the scene. A plane is twice
-/// as large as the scene and a ground twenty times; both touch the lowest point of the scene.
+/// Adds a shape. A solid is about a fifth as large as the view, and rests on the ground next to the
+/// other objects in view. A plane is twice as large as the scene and a ground twenty times; both
+/// touch the lowest point of the scene.
 #[must_use]
 pub fn insert(scene: &Scene, view: &View, shape: Shape) -> Command {
-    let of_scene = match shape {
-        Shape::Ground => 20.0,
-        Shape::Plane => 2.0,
-        Shape::Cube | Shape::Sphere | Shape::Cylinder | Shape::Torus => 0.2,
+    let site = Site::new(scene, view);
+    let (size, place) = match shape {
+        Shape::Ground => (site_extent(scene, &site) * 20.0, ground(scene, view.time, &site)),
+        Shape::Plane => (site_extent(scene, &site) * 2.0, ground(scene, view.time, &site)),
+        Shape::Cube | Shape::Sphere | Shape::Cylinder | Shape::Torus => {
+            let height = shape.model().mesh.bounds().map_or(0.0, |bounds| bounds.extent().y);
+            (site.size, site.place(site.size * height))
+        }
     };
-    let extent = Some(extent(scene)).filter(|extent| *extent > 0.0).unwrap_or(ALONE / 0.2);
-    let size = rounded(extent * of_scene).unwrap_or(ALONE);
-    let place = if shape.is_ground() { ground(scene, view.time) } else { DVec3::ZERO };
+    let size = rounded(size).and_then(Scale::new).unwrap_or_default();
     // The ground fades out by its own material.
     let material = match shape {
         Shape::Ground => MaterialChoice::File,
@@ -30,18 +33,32 @@ pub fn insert(scene: &Scene, view: &View, shape: Shape) -> Command {
             MaterialChoice::Preset(PresetId::SILVER)
         }
     };
-    let mut object = Object::new(shape.model(), material);
+    let mut object = Object::new(model(scene, shape, size), material);
     object.sides = Sides::Auto;
-    object.placement =
-        Tracked::new(DMat4::from_translation(place) * DMat4::from_scale(DVec3::splat(size)));
+    object.placement = Tracked::new(DMat4::from_translation(place));
     insert_object(scene, object)
 }
 
+/// Returns the model of this shape and size. Objects of the scene share it.
+fn model(scene: &Scene, shape: Shape, size: Scale) -> Shared<Model> {
+    let mut models = scene.objects.iter().map(|(_, object)| &object.model);
+    let is_it = |it: &&Shared<Model>| Shape::of(it) == Some(shape) && it.options.scale == size;
+    models.find(is_it).cloned().unwrap_or_else(|| shape.sized(size))
+}
+
+/// Returns the extent of the objects, or the height of the view if there are none.
+fn site_extent(scene: &Scene, site: &Site) -> f64 {
+    extent_without_grounds(scene).filter(|extent| *extent > 0.0).unwrap_or(site.height)
+}
+
 /// Returns the centre of the bottom of the box around all objects.
-fn ground(scene: &Scene, time: f64) -> DVec3 {
+fn ground(scene: &Scene, time: f64, site: &Site) -> DVec3 {
     let vertices = scene.objects.iter().flat_map(|(_, object)| object.placed_vertices(time));
-    Bounds::of(vertices).map_or(DVec3::ZERO, |bounds| {
-        let middle = bounds.centre();
-        DVec3::new(middle.x, bounds.min.y, middle.z)
-    })
+    Bounds::of(vertices).map_or_else(
+        || site.floor_at_focus(),
+        |bounds| {
+            let middle = bounds.centre();
+            DVec3::new(middle.x, bounds.min.y, middle.z)
+        },
+    )
 }

@@ -23,6 +23,16 @@ pub fn length(scene: &Scene, view: &View) -> f64 {
 /// extent of the scene, nor does moving a single object. Ground and plane shapes do not count if
 /// there are other objects, because they are larger than the objects on them.
 pub fn extent(scene: &Scene) -> f64 {
+    extent_without_grounds(scene).or_else(|| extent_of(scene, |_| true)).unwrap_or(0.0)
+}
+
+/// Returns the extent of the objects that are not ground or plane shapes; `None` without any.
+pub(super) fn extent_without_grounds(scene: &Scene) -> Option<f64> {
+    extent_of(scene, |object| !is_ground(object))
+}
+
+/// Returns the extent of some objects; `None` without any.
+fn extent_of(scene: &Scene, counts: impl Fn(&Object) -> bool) -> Option<f64> {
     let cube = |object: &Object| {
         let mesh = &object.model.mesh;
         let middle = mesh.bounds()?.centre() + mesh.offset();
@@ -30,12 +40,10 @@ pub fn extent(scene: &Scene) -> f64 {
         let centre = object.placement.now().transform_point3(middle);
         Some((centre - half, centre + half))
     };
-    let around = |with_ground: bool| {
-        let objects = scene.objects.iter().map(|(_, object)| object);
-        let cubes = objects.filter(|object| with_ground || !is_ground(object)).filter_map(cube);
-        cubes.reduce(|(min, max), (low, high)| (min.min(low), max.max(high)))
-    };
-    around(false).or_else(|| around(true)).map_or(0.0, |(min, max)| (max - min).max_element())
+    let objects = scene.objects.iter().map(|(_, object)| object);
+    let cubes = objects.filter(|object| counts(object)).filter_map(cube);
+    let around = cubes.reduce(|(min, max), (low, high)| (min.min(low), max.max(high)));
+    around.map(|(min, max)| (max - min).max_element())
 }
 
 /// Returns the spacing of the lines of the ground grid. Ten of them are about as long as the scene.
@@ -45,8 +53,7 @@ pub fn of_grid(scene: &Scene) -> f64 {
 
 /// Returns whether an object is a ground or plane shape.
 pub(super) fn is_ground(object: &Object) -> bool {
-    let shape = Shape::named(&object.model.name).filter(|_| object.model.source.is_none());
-    shape.is_some_and(Shape::is_ground)
+    Shape::of(&object.model).is_some_and(Shape::is_ground)
 }
 
 /// Rounds to 1, 2 or 5 times a power of 10, the nearest by ratio; `None` if `length` is not

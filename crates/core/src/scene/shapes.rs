@@ -1,13 +1,13 @@
 //! The built-in shapes: ground, plane, cube, sphere, cylinder, torus.
 //!
-//! Each shape is one unit wide and centred at the origin, so an object's scale is its size.
-//! Vertices lie on the exact surface, and corners have the normals of that surface, rounded to
+//! Each shape is centred at the origin. Its size, the width, is part of the mesh: an object of this
+//! shape has scale 1, so steps and amounts along its axes count in units of the world. Vertices lie on the exact surface, and corners have the normals of that surface, rounded to
 //! single precision. Flat faces are exact. A round shape lies inside its surface by at most 1 -
 //! cos(pi / N) of the radius for N faces around.
 
 use std::sync::OnceLock;
 
-use super::{Mesh, Model};
+use super::{LoadOptions, Mesh, Model, Scale};
 use crate::base::Shared;
 use crate::base::once::get_or_compute;
 use solids::Builder;
@@ -15,7 +15,7 @@ use solids::Builder;
 mod ground;
 mod solids;
 
-/// A built-in shape.
+/// A built-in shape. The variants describe the shape that is one unit wide.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Shape {
     /// A disc of diameter 1 in the XZ plane, seen from above, that fades out towards its rim: see
@@ -64,18 +64,34 @@ impl Shape {
         Self::ALL.into_iter().find(|shape| shape.name() == name)
     }
 
-    /// Returns the model, shared by all objects of this shape.
+    /// Returns the shape of a model; `None` for other models.
+    pub fn of(model: &Model) -> Option<Self> {
+        Self::named(&model.name).filter(|_| model.source.is_none())
+    }
+
+    /// Returns the model that is one unit wide, shared by all objects of this shape and size.
     pub fn model(self) -> Shared<Model> {
         static MODELS: [OnceLock<Shared<Model>>; 6] = [const { OnceLock::new() }; 6];
-        let make = || {
-            let materials = if self == Self::Ground { ground::materials() } else { Vec::new() };
-            Shared::new(Model { materials, ..Model::of_mesh(self.name(), self.mesh()) })
-        };
+        let make = || Shared::new(self.made(Scale::default()));
         get_or_compute(&MODELS[self as usize], make).clone()
     }
 
-    fn mesh(self) -> Mesh {
-        let mut builder = Builder::default();
+    /// Returns a model of this width, at least 1e-30 and at most 1e30. Its scale among the load
+    /// options is the width.
+    pub fn sized(self, size: Scale) -> Shared<Model> {
+        // Positions are in single precision.
+        let size = Scale::new(size.get().clamp(1e-30, 1e30)).unwrap_or_default();
+        if size == Scale::default() { self.model() } else { Shared::new(self.made(size)) }
+    }
+
+    fn made(self, size: Scale) -> Model {
+        let materials = if self == Self::Ground { ground::materials() } else { Vec::new() };
+        let options = LoadOptions { scale: size, ..LoadOptions::default() };
+        Model { materials, options, ..Model::of_mesh(self.name(), self.mesh(size.get())) }
+    }
+
+    fn mesh(self, size: f64) -> Mesh {
+        let mut builder = Builder::new(size);
         match self {
             Self::Ground => ground::build(&mut builder),
             Self::Plane => solids::plane(&mut builder),
@@ -145,6 +161,22 @@ mod tests {
             assert_eq!(bounds.centre(), DVec3::ZERO, "{shape:?}");
             assert_eq!(model.mesh.is_closed(), !shape.is_ground(), "{shape:?}");
             assert_eq!(Shape::named(shape.name()), Some(shape));
+        }
+    }
+
+    #[test]
+    fn a_shape_of_another_size_is_scaled_exactly_about_the_origin_and_knows_its_size() {
+        for shape in Shape::ALL {
+            let unit = shape.model();
+            for size in [1e-9, 0.3, 1.0, 64.0, 5e12] {
+                let model = shape.sized(Scale::new(size).unwrap());
+                assert_eq!((Shape::of(&model), model.options.scale.get()), (Some(shape), size));
+                assert_eq!(Shared::same(&model, &unit), size == 1.0, "{shape:?}");
+                let extent = model.mesh.bounds().unwrap().extent();
+                let wanted = unit.mesh.bounds().unwrap().extent() * size;
+                assert!((extent - wanted).abs().max_element() <= 1e-7 * size, "{shape:?}");
+                assert_eq!(model.mesh.is_closed(), !shape.is_ground(), "{shape:?}");
+            }
         }
     }
 

@@ -65,7 +65,9 @@ impl<'a> BoxSizes<'a> {
 
 fn is_ground(model: &FileModel) -> bool {
     match model {
-        FileModel::Own(name) => Shape::named(name).is_some_and(Shape::is_ground),
+        FileModel::Own(name) | FileModel::Shape { name, .. } => {
+            Shape::named(name).is_some_and(Shape::is_ground)
+        }
         FileModel::File { .. } => false,
     }
 }

@@ -16,18 +16,20 @@ use crate::texture::Pictures;
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{
-    BumpMaps, Crease, LoadOptions, Model, Scale, Scene, Texture, UpAxis, Winding,
+    BumpMaps, Crease, LoadOptions, Model, Scale, Scene, Shape, Texture, UpAxis, Winding,
 };
 
-/// The identity of a model in a scene file: its name or path, and its load options. The crease
-/// angle comes last, so files that differ only in it are neighbours.
-type ModelKey = (String, Option<(UpAxis, u64, Winding, BumpMaps, u64)>);
+/// The identity of a model in a scene file: its name or path, the size of a shape, and the load
+/// options of a file. The crease angle comes last, so files that differ only in it are neighbours.
+type ModelKey = (String, Option<u64>, Option<(UpAxis, u64, Winding, BumpMaps, u64)>);
 
 fn key(model: &FileModel) -> ModelKey {
     match model {
-        FileModel::Own(name) => (name.clone(), None),
+        FileModel::Own(name) => (name.clone(), None, None),
+        FileModel::Shape { name, size } => (name.clone(), Some(size.to_bits()), None),
         FileModel::File { path, up, scale, winding, crease, bumps } => {
-            (path.clone(), Some((*up, scale.to_bits(), *winding, *bumps, crease.to_bits())))
+            let options = (*up, scale.to_bits(), *winding, *bumps, crease.to_bits());
+            (path.clone(), None, Some(options))
         }
     }
 }
@@ -169,9 +171,9 @@ impl Files {
 
     /// Finds the same file loaded with another crease angle, to avoid reading it twice.
     fn with_other_crease(&self, model: &FileModel) -> Option<&Shared<Model>> {
-        let (path, options) = key(model);
+        let (path, _, options) = key(model);
         let (up, scale, winding, bumps, _) = options?;
-        let with = |crease| (path.clone(), Some((up, scale, winding, bumps, crease)));
+        let with = |crease| (path.clone(), None, Some((up, scale, winding, bumps, crease)));
         let mut others = self.models.range(with(0)..=with(u64::MAX));
         others.next().map(|(_, loaded)| loaded)
     }
@@ -189,6 +191,14 @@ impl Files {
                 return own_model.map(Some).ok_or_else(|| SceneFileError::File {
                     file: name.to_owned(),
                     reason: format!("there is no built-in model \"{own}\""),
+                });
+            }
+            FileModel::Shape { name: own, size } => {
+                let shape = Shape::named(own).zip(Scale::new(*size));
+                let model = shape.map(|(shape, size)| Some(shape.sized(size)));
+                return model.ok_or_else(|| SceneFileError::File {
+                    file: name.to_owned(),
+                    reason: format!("there is no shape \"{own}\" of size {size}"),
                 });
             }
             FileModel::File { .. } => read_options(model, name)?,

@@ -88,6 +88,8 @@ impl FileLocked {
 pub(super) enum FileModel {
     /// A built-in model, by name.
     Own(String),
+    /// A built-in shape of this width. Shapes that are one unit wide are [`Self::Own`].
+    Shape { name: String, size: f64 },
     /// A file, relative to the folder of the scene file.
     File {
         path: String,

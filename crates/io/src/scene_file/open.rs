@@ -196,7 +196,7 @@ fn read_object(object: &FileObject, needs: &dyn Needs, room: &mut usize) -> Resu
 fn read_sides(object: &FileObject) -> Sides {
     let earlier = object.two_sided.map(|two| if two { Sides::Two } else { Sides::One });
     object.sides.or(earlier).unwrap_or(match object.model {
-        FileModel::Own(_) => Sides::One,
+        FileModel::Own(_) | FileModel::Shape { .. } => Sides::One,
         FileModel::File { .. } => Sides::Auto,
     })
 }

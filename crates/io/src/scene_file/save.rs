@@ -16,7 +16,7 @@ use crate::window_state::WindowState;
 use crate::{is_example, own_texture};
 use marraztu_core::accuracy::Settings;
 use marraztu_core::scene::{
-    Camera, CameraMode, LoadOptions, Model, Object, Pose, Scene, Texture, View,
+    Camera, CameraMode, LoadOptions, Model, Object, Pose, Scene, Shape, Texture, View,
 };
 
 /// Converts a scene with its view and settings to the types of the file. `folder` is the file's
@@ -47,6 +47,10 @@ pub(super) fn file_scene(
 pub(super) fn file_model(model: &Model, folder: &Path) -> Result<FileModel, String> {
     let Model { name, source, options, .. } = model;
     let Some(source) = source else {
+        let size = options.scale.get();
+        if let Some(shape) = Shape::of(model).filter(|_| size != 1.0) {
+            return Ok(FileModel::Shape { name: shape.name().to_owned(), size });
+        }
         return if crate::own_model(name).is_some() {
             Ok(FileModel::Own(name.clone()))
         } else {

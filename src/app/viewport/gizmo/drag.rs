@@ -270,7 +270,7 @@ impl Grab {
                         Amount::Scale(DVec3::ONE + axis.unit() * (to / from - 1.0))
                     }
                     Transformation::Translation | Transformation::Rotation => {
-                        Amount::Move(axis.unit() * ((to - from) / pivot.unit(axis)))
+                        Amount::Move(axis.unit() * (to - from))
                     }
                 })
             }

@@ -19,14 +19,20 @@ const ALONG: u32 = 32;
 pub(super) const TORUS: [f64; 2] = [0.375, 0.125];
 
 /// Vertices, texture coordinates, normals and polygons under construction.
-#[derive(Default)]
 pub(super) struct Builder {
     pub(super) source: MeshSource,
+    /// The width of the shape.
+    size: f64,
 }
 
 impl Builder {
+    pub(super) fn new(size: f64) -> Self {
+        Self { source: MeshSource::default(), size }
+    }
+
+    /// Adds a vertex of the shape that is one unit wide.
     pub(super) fn position(&mut self, p: DVec3) -> u32 {
-        self.source.positions.push(p.as_vec3().to_array());
+        self.source.positions.push((p * self.size).as_vec3().to_array());
         last(self.source.positions.len())
     }
 

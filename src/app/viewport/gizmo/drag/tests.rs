@@ -3,7 +3,7 @@
 use super::*;
 use crate::app::viewport::gizmo::Shape;
 use egui::vec2;
-use glam::DMat4;
+use glam::{DMat3, DMat4};
 use marraztu_core::edit::placement;
 use marraztu_core::scene::Frame;
 
@@ -118,16 +118,16 @@ fn a_scale_of_0_is_refused_and_a_negative_one_mirrors() {
 #[test]
 fn in_the_global_frame_rotation_and_scaling_pivot_on_the_origin() {
     let at = DVec3::new(5.0, 6.0, 7.0);
-    for (frame, kind, origin, unit) in [
-        (Frame::Local, Transformation::Rotation, at, 3.0),
-        (Frame::Global, Transformation::Translation, at, 1.0),
-        (Frame::Global, Transformation::Rotation, DVec3::ZERO, 1.0),
-        (Frame::Global, Transformation::Scaling, DVec3::ZERO, 1.0),
+    for (frame, kind, origin) in [
+        (Frame::Local, Transformation::Rotation, at),
+        (Frame::Global, Transformation::Translation, at),
+        (Frame::Global, Transformation::Rotation, DVec3::ZERO),
+        (Frame::Global, Transformation::Scaling, DVec3::ZERO),
     ] {
         let mut state = scene(at, 3.0);
         (state.view.frame, state.view.transformation) = (frame, kind);
         let pivot = gizmo::pivot(&state.scene, &state.view).unwrap();
-        assert_eq!((pivot.origin, pivot.unit(Axis::Y)), (origin, unit), "{frame:?} {kind:?}");
+        assert_eq!((pivot.origin, pivot.axes), (origin, DMat3::IDENTITY), "{frame:?} {kind:?}");
     }
 }
 
@@ -160,4 +160,20 @@ fn a_ring_dragged_once_around_comes_back_and_a_half_turn_is_one() {
     }
     assert!((turned[7] - 180.0).abs() < 0.5, "{turned:?}");
     assert!((turned[15] - 360.0).abs() < 0.5, "{turned:?}");
+}
+
+#[test]
+fn a_scaled_object_stays_under_the_pointer_and_moves_by_the_typed_number() {
+    for size in [1e-3, 40.0, 2400.0] {
+        let mut state = scene(DVec3::ZERO, size);
+        let amount = drag(&mut state, Handle::Axis(Axis::X), vec2(30.0, 0.0), "60");
+        assert_eq!(amount, Some(Amount::Move(DVec3::X * 60.0)));
+        assert_eq!(placed(&state).w_axis.x, 60.0);
+        let mut state = scene(DVec3::ZERO, size);
+        let Some(Amount::Move(by)) = drag(&mut state, Handle::Middle, vec2(30.0, 0.0), "") else {
+            panic!()
+        };
+        let moved = placed(&state).w_axis.truncate();
+        assert!((moved.length() - by.length()).abs() < 1e-9 * by.length(), "{by} moves {moved}");
+    }
 }
