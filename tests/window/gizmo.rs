@@ -80,6 +80,17 @@ fn dragging_a_handle_moves_along_its_axis_in_one_step_named_with_the_distance() 
 }
 
 #[test]
+fn the_letter_at_the_end_of_an_axis_is_part_of_its_handle() {
+    let mut editor = with_ship();
+    let eye = editor.scene().selected_camera(&editor.view()).pose.now().eye;
+    let from = middle(&editor) + vec2(84.0 + 15.0, 0.0);
+    editor.drag(LEFT, &[from, from + vec2(25.0, 9.0), from + vec2(50.0, 30.0)]);
+    let moved = place(&editor) - DVec3::new(-100.0, 0.0, 0.0);
+    assert!(moved.x > 5.0 && moved.y == 0.0 && moved.z == 0.0, "{moved}");
+    assert_eq!(editor.scene().selected_camera(&editor.view()).pose.now().eye, eye);
+}
+
+#[test]
 fn a_new_shape_moves_by_the_step_of_a_key_and_by_a_typed_number() {
     let mut editor = with_ship();
     editor.perform(Action::AddCube);

@@ -37,7 +37,7 @@ impl MouseInfo {
             => "mouse zoom fit focus left";
         ["Drag"] "Look around" "Turns the camera; in analysis, orbits the selected object."
             => "mouse orbit turn rotate view left";
-        ["Alt+drag"] "Orbit" "Orbits the selected object, in fly as well."
+        ["Alt+drag", "Drag the axes"] "Orbit" "Orbits the selected object, in fly as well."
             => "mouse turn rotate around view left";
         ["Shift+drag", "Middle drag"] "Pan" "Moves the camera sideways."
             => "mouse shift move view left";

@@ -1,6 +1,7 @@
-//! The world's axes in a corner of the picture; a click on an end looks along that axis.
+//! The world's axes on a disc in a corner of the picture: a click on an end looks along that axis,
+//! and a drag of the disc orbits.
 
-use egui::{Align2, Color32, Pos2, Rect, Stroke, TextStyle, Ui, vec2};
+use egui::{Align2, Color32, CursorIcon, Pos2, Rect, Stroke, TextStyle, Ui, vec2};
 use glam::DMat3;
 
 use crate::app::actions::Action;
@@ -13,6 +14,9 @@ const LENGTH: f32 = 30.0;
 
 /// The radius of an end.
 const END: f32 = 8.0;
+
+/// The radius of the disc.
+const DISC: f32 = LENGTH + END + 3.0;
 
 /// Pictures with a smaller side than this do not show the axes.
 const LEAST: f32 = 180.0;
@@ -34,7 +38,7 @@ pub(super) fn ends(state: &State, rect: Rect) -> Vec<End> {
     if !state.shows_overlays() || rect.width().min(rect.height()) < LEAST {
         return Vec::new();
     }
-    let middle = rect.right_top() + vec2(-(LENGTH + END + 8.0), LENGTH + END + 8.0);
+    let middle = middle(rect);
     let view_from_world = DMat3::from_mat4(state.scene.observer_frame(&state.view)).transpose();
     let mut ends = Vec::new();
     for (axis, actions) in [
@@ -53,33 +57,50 @@ pub(super) fn ends(state: &State, rect: Rect) -> Vec<End> {
     ends
 }
 
+/// Returns the middle of the disc.
+fn middle(rect: Rect) -> Pos2 {
+    rect.right_top() + vec2(-(LENGTH + END + 8.0), LENGTH + END + 8.0)
+}
+
+/// Returns whether the disc is shown and contains a place of the window.
+pub(super) fn has(ends: &[End], rect: Rect, at: Pos2) -> bool {
+    !ends.is_empty() && middle(rect).distance(at) <= DISC
+}
+
 /// Finds the end at a place of the window. If ends overlap, the nearest to the observer is found.
 pub(super) fn end_at(ends: &[End], at: Pos2) -> Option<End> {
     ends.iter().rev().find(|end| end.at.distance(at) <= END + 1.0).copied()
 }
 
-/// Draws the axes. The positive ends have letters; the negative ends are rings.
-pub(super) fn show(ui: &Ui, rect: Rect, ends: &[End], hovered: Option<End>) {
+/// Draws the axes. The positive ends have letters; the negative ends are rings. The disc under the
+/// pointer is darker, and the end under it is white.
+pub(super) fn show(ui: &Ui, rect: Rect, ends: &[End], pointer: Option<Pos2>) {
     if ends.is_empty() {
         return;
     }
-    let middle = rect.right_top() + vec2(-(LENGTH + END + 8.0), LENGTH + END + 8.0);
+    let middle = middle(rect);
     let painter = ui.painter().with_clip_rect(rect);
-    painter.circle_filled(middle, LENGTH + END + 3.0, Color32::from_black_alpha(90));
+    let is_over = pointer.is_some_and(|at| has(ends, rect, at));
+    let hovered = pointer.and_then(|at| end_at(ends, at));
+    painter.circle_filled(middle, DISC, Color32::from_black_alpha(if is_over { 150 } else { 90 }));
+    if is_over {
+        let icon = if hovered.is_some() { CursorIcon::PointingHand } else { CursorIcon::Grab };
+        ui.ctx().set_cursor_icon(icon);
+    }
     for end in ends {
         // The light colours are readable on the dark disk in both themes.
         let color = theme::axis_on_dark(end.axis);
         let is_hovered = hovered == Some(*end);
-        let ring = if is_hovered { Color32::WHITE } else { color };
+        let color = if is_hovered { Color32::WHITE } else { color };
         if end.positive {
             painter.line_segment([middle, end.at], Stroke::new(2.0, color));
-            painter.circle(end.at, END, color, Stroke::new(1.5, ring));
+            painter.circle_filled(end.at, END, color);
             let font = TextStyle::Small.resolve(ui.style());
             let letter = ["X", "Y", "Z"][end.axis.index()];
             painter.text(end.at, Align2::CENTER_CENTER, letter, font, Color32::BLACK);
         } else {
-            let fill = color.gamma_multiply(0.35);
-            painter.circle(end.at, END - 2.0, fill, Stroke::new(1.5, ring));
+            let fill = color.gamma_multiply(if is_hovered { 0.8 } else { 0.35 });
+            painter.circle(end.at, END - 2.0, fill, Stroke::new(1.5, color));
         }
     }
 }

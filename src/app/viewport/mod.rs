@@ -200,7 +200,8 @@ impl Viewport {
         let hit = self.hovered.and_then(|(_, hit)| hit);
         let gizmo = Gizmo::new(state, rect, size);
         let typed = Keyboard::take_typed(ui.ctx());
-        let under = Under { rect, size, hit, gizmo: gizmo.as_ref(), typed: &typed };
+        let ends = if state.picture_only { Vec::new() } else { axes::ends(state, rect) };
+        let under = Under { rect, size, hit, gizmo: gizmo.as_ref(), axes: &ends, typed: &typed };
         let picks = self.mouse.ui(ui, &response, state, under, requests);
         let letters = match (self.mouse.is_flying(), self.mouse.is_typing()) {
             (true, _) => Letters::Steer,

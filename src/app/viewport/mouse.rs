@@ -7,6 +7,7 @@
 //! | right held | look, and fly with W A S D Q E; a right click within 4 points is a menu |
 //! | wheel, pinch | zoom towards the pointer; while flying, the speed |
 //! | left drag on a handle of the gizmo | moves, rotates or scales; Ctrl snaps, numbers are typed |
+//! | left drag on the axes in the corner | orbit; a click looks along the axis |
 //! | Shift + left click | selects one more, or one less |
 //! | Ctrl + left drag | selects all in a box |
 //! | right press or Esc during another drag | back to where it began |
@@ -18,9 +19,8 @@ mod handles;
 use egui::{Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, Rect, Response, Ui, Vec2};
 use glam::{DVec2, DVec3};
 
-use super::Purpose;
-use super::comparison;
 use super::gizmo::{Gizmo, Grab};
+use super::{Purpose, axes, comparison};
 use crate::app::actions::{Request, Requests};
 use crate::app::state::State;
 use crate::app::widgets::gestures;
@@ -65,6 +65,8 @@ pub(crate) struct Under<'a> {
     pub(crate) hit: Option<Hit>,
     /// The gizmo over the picture.
     pub(crate) gizmo: Option<&'a Gizmo>,
+    /// The axes over the picture.
+    pub(super) axes: &'a [axes::End],
     /// The text typed in this frame while a handle is held.
     pub(crate) typed: &'a str,
 }
@@ -219,6 +221,8 @@ impl Mouse {
         let pose = state.scene.selected_camera(&state.view).pose.now();
         let held = under.gizmo.and_then(|gizmo| Some((gizmo, gizmo.handle_at(from)?)));
         let motion = match button {
+            // The axes lie over everything else.
+            PointerButton::Primary if axes::has(under.axes, under.rect, from) => Motion::Orbit,
             PointerButton::Primary if state.picture_only && !modifiers.shift => Motion::Orbit,
             PointerButton::Secondary if state.picture_only => Motion::Pan,
             PointerButton::Secondary => Motion::Fly,

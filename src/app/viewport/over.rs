@@ -49,6 +49,7 @@ impl Viewport {
         let grab = self.mouse.grab();
         if let Some(gizmo) = &over.gizmo {
             let pointer = response.hover_pos().filter(|_| !self.mouse.is_dragging());
+            let pointer = pointer.filter(|at| !axes::has(&over.ends, rect, *at));
             let hovered = pointer.and_then(|at| gizmo.handle_at(at));
             gizmo.show(ui, rect, grab.map(Grab::handle), hovered);
         }
@@ -75,10 +76,12 @@ impl Viewport {
         purpose: Purpose,
     ) -> Option<Option<Request>> {
         let is_end = axes::end_at(&over.ends, at);
+        let is_axes = self.place.is_some_and(|(rect, _)| axes::has(&over.ends, rect, at));
         match (purpose, is_end) {
             (Purpose::Select, Some(end)) => Some(Some(Request::Do(end.action))),
             // Both clicks of a double click have turned the view already.
             (Purpose::Frame, Some(_)) => Some(None),
+            (Purpose::Select | Purpose::Frame, None) if is_axes => Some(None),
             (Purpose::SelectAlso, None) => {
                 let [free, _] = marks::lights_at(&over.marks, at);
                 Some(Some(Request::SelectAlso(vec![*free.first()?], Also::Toggle)))
@@ -170,7 +173,7 @@ impl Viewport {
         self.handles_ui(ui, rect, response, over);
         let pointer = response.hover_pos().filter(|_| !self.mouse.is_dragging());
         let end = pointer.and_then(|at| axes::end_at(&over.ends, at));
-        axes::show(ui, rect, &over.ends, end);
+        axes::show(ui, rect, &over.ends, pointer);
         let light = pointer.and_then(|at| marks::lights_at(&over.marks, at)[0].first().copied());
         if let Some(end) = end {
             plate_ui(ui, rect, egui::Align2::RIGHT_BOTTOM, end.action.info().label.to_owned());

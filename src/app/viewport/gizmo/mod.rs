@@ -38,6 +38,12 @@ const MIDDLE: f32 = 8.0;
 /// The radius of the ring around the line of sight, in parts of an axis.
 const OUTER: f32 = 1.18;
 
+/// The radius of the disc with the letter of an axis, in points.
+const LETTER: f32 = 8.0;
+
+/// The distance from the end of an axis to the middle of its letter, in points.
+const TO_LETTER: f32 = LETTER + 7.0;
+
 /// The number of sides of a ring.
 const SIDES: u32 = 64;
 
@@ -213,9 +219,21 @@ impl Gizmo {
 }
 
 impl Shape {
-    /// Returns the distance of a place from the shape, at least 0; `None` if an area does not
-    /// contain it.
+    /// Returns the place of the letter of an axis, if the shape has one.
+    fn letter(&self) -> Option<Pos2> {
+        match self {
+            Self::Line([from, to]) => Some(*to + (*to - *from).normalized() * TO_LETTER),
+            Self::Ring { near, .. } => near.get(near.len() / 2).copied(),
+            Self::Square(_) | Self::Circle(..) | Self::Disk(_) => None,
+        }
+    }
+
+    /// Returns the distance of a place from the shape and its letter, at least 0; `None` if an area
+    /// does not contain it.
     fn distance(&self, at: Pos2) -> Option<f32> {
+        if self.letter().is_some_and(|letter| letter.distance(at) <= LETTER) {
+            return Some(0.0);
+        }
         match self {
             // All axes meet in the middle, so their inner ends are left to the disk.
             Self::Line([from, to]) => {

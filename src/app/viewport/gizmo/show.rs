@@ -3,16 +3,13 @@
 use egui::{Align2, Color32, CursorIcon, Painter, Pos2, Rect, Shape as Paint, Stroke, TextStyle};
 use egui::{Ui, Vec2, vec2};
 
-use super::{Gizmo, Handle, MIDDLE, Part, Shape};
+use super::{Gizmo, Handle, LETTER, MIDDLE, Part, Shape};
 use crate::app::theme;
 use marraztu_core::base::math::Axis;
 use marraztu_core::scene::Transformation;
 
 /// The outline of lines, which makes them visible on any background.
 const SHADE: Color32 = Color32::from_black_alpha(150);
-
-/// The radius of the disk behind a letter.
-const LETTER: f32 = 8.0;
 
 impl Gizmo {
     /// Draws the gizmo. `held` is the handle being dragged, `hovered` the one under the pointer.
@@ -42,7 +39,8 @@ impl Gizmo {
         let width = if bright { 4.0 } else { 2.5 };
         let stroke = Stroke::new(width, color);
         let font = TextStyle::Small.resolve(ui.style());
-        let letter = |at: Pos2, axis: Axis| {
+        let letter = |axis: Axis| {
+            let Some(at) = part.shape.letter() else { return };
             painter.circle(at, LETTER, color, Stroke::new(1.5, SHADE));
             let letter = ["X", "Y", "Z"][axis.index()];
             painter.text(at, Align2::CENTER_CENTER, letter, font.clone(), Color32::BLACK);
@@ -52,9 +50,8 @@ impl Gizmo {
                 // The line starts outside of the disk in the middle.
                 let way = (*to - *from).normalized();
                 line(painter, &[*from + way * MIDDLE, *to], stroke);
-                let beyond = *to + way * (LETTER + 7.0);
                 self.end_ui(painter, *to, way, color);
-                letter(beyond, axis);
+                letter(axis);
             }
             (Shape::Square(corners), _) => {
                 let fill = own.gamma_multiply(if bright { 0.8 } else { 0.35 });
@@ -68,9 +65,7 @@ impl Gizmo {
                         .add(Paint::line(far.clone(), Stroke::new(1.0, own.gamma_multiply(0.5))));
                 }
                 line(painter, near, stroke);
-                let place = near.len() / 2;
-                let at = near.get(place).copied().unwrap_or(Pos2::ZERO);
-                letter(at, axis);
+                letter(axis);
             }
             (Shape::Circle(middle, radius), _) => {
                 painter.circle_stroke(*middle, *radius, Stroke::new(width + 1.5, SHADE));

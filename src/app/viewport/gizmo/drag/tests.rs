@@ -163,6 +163,24 @@ fn a_ring_dragged_once_around_comes_back_and_a_half_turn_is_one() {
 }
 
 #[test]
+fn every_letter_is_a_part_of_the_handle_of_its_axis() {
+    for kind in [Transformation::Translation, Transformation::Rotation, Transformation::Scaling] {
+        let mut state = scene(DVec3::ZERO, 1.0);
+        state.view.transformation = kind;
+        let gizmo = gizmo(&state);
+        let letters =
+            gizmo.parts.iter().filter_map(|part| Some((part.handle, part.shape.letter()?)));
+        let letters: Vec<(Handle, Pos2)> = letters.collect();
+        assert_eq!(letters.len(), 3, "{kind:?}");
+        for (handle, at) in letters {
+            for aside in [vec2(0.0, 0.0), vec2(7.0, 0.0), vec2(-4.0, 5.0), vec2(0.0, -7.0)] {
+                assert_eq!(gizmo.handle_at(at + aside), Some(handle), "{kind:?} {aside:?}");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_scaled_object_stays_under_the_pointer_and_moves_by_the_typed_number() {
     for size in [1e-3, 40.0, 2400.0] {
         let mut state = scene(DVec3::ZERO, size);
