@@ -18,6 +18,8 @@ pub enum Chord {
     Named(Key),
     /// A key that types no text, with Shift.
     Shifted(Key),
+    /// A key that types no text, with Alt.
+    Alt(Key),
     /// A sign, matched by the typed text.
     Text(&'static str),
     /// With Ctrl (Cmd on a Mac).
@@ -40,6 +42,7 @@ impl Chord {
             Self::Either(wanted) => wanted == key && plain,
             Self::Named(wanted) => wanted == key && plain && !shift,
             Self::Shifted(wanted) => wanted == key && plain && shift,
+            Self::Alt(wanted) => wanted == key && alt && !command && !ctrl && !mac_cmd && !shift,
             Self::Text(_) => false,
             Self::Command(wanted) => {
                 // On most layouts, plus requires Shift.
@@ -54,7 +57,9 @@ impl Chord {
         match self {
             Self::Command(_) | Self::CommandShift(_) => true,
             Self::Named(key) | Self::Shifted(key) => matches!(key, Key::F1 | Key::F6 | Key::F12),
-            Self::Lower(_) | Self::Upper(_) | Self::Either(_) | Self::Text(_) => false,
+            Self::Lower(_) | Self::Upper(_) | Self::Either(_) | Self::Alt(_) | Self::Text(_) => {
+                false
+            }
         }
     }
 
@@ -77,6 +82,7 @@ impl Chord {
             Self::Named(Key::Escape) => "Esc".to_owned(),
             Self::Named(key) => key.name().to_owned(),
             Self::Shifted(key) => format!("Shift+{}", key.name()),
+            Self::Alt(key) => format!("Alt+{}", key.name()),
             Self::Text(sign) => sign.to_owned(),
             Self::Command(key) => format!("{}+{}", command_key!(), key.name()),
             Self::CommandShift(key) => format!("{}+Shift+{}", command_key!(), key.name()),
@@ -131,6 +137,7 @@ mod tests {
         assert!(pressed(upper, Modifiers::SHIFT) && !pressed(lower, Modifiers::SHIFT));
         for modifiers in [Modifiers::ALT, Modifiers::CTRL, Modifiers::COMMAND] {
             assert!(!pressed(lower, modifiers) && !pressed(upper, modifiers | Modifiers::SHIFT));
+            assert_eq!(pressed(Chord::Alt(Key::X), modifiers), modifiers == Modifiers::ALT);
         }
     }
 

@@ -218,6 +218,7 @@ pub(crate) fn events_of(chord: Chord) -> (Key, Modifiers, Option<String>) {
         Chord::Upper(key) => (key, Modifiers::SHIFT, Some(key.name().to_owned())),
         Chord::Named(key) => (key, Modifiers::NONE, None),
         Chord::Shifted(key) => (key, Modifiers::SHIFT, None),
+        Chord::Alt(key) => (key, Modifiers::ALT, None),
         Chord::Text("+") => (Key::Plus, Modifiers::SHIFT, Some("+".to_owned())),
         Chord::Text("-") => (Key::Minus, Modifiers::NONE, Some("-".to_owned())),
         Chord::Text(".") => (Key::Period, Modifiers::NONE, Some(".".to_owned())),

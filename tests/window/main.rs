@@ -39,4 +39,5 @@ mod shapes;
 mod tasks;
 mod undo_buttons;
 mod undoing;
+mod viewing;
 mod ways;

@@ -2,7 +2,7 @@
 
 use egui::ThemePreference;
 
-use crate::app::state::State;
+use crate::app::state::{State, ViewStep};
 use crate::app::widgets::regions::Way;
 use marraztu_core::edit::selection::Selection;
 use marraztu_core::scene::{Command, ItemId, ObjectId, Subject, View};
@@ -15,6 +15,8 @@ pub(crate) enum Intent {
     Add(Command, Subject),
     /// Move the view.
     Navigate(Command),
+    /// Go to an earlier or later viewpoint, or to the saved one.
+    ToViewpoint(ViewStep),
     /// Change the view.
     View(Box<View>),
     /// Change the selection.

@@ -9,7 +9,7 @@ use egui::ThemePreference;
 use super::intent::{ClipboardIntent, FileIntent, Intent};
 use super::table::Action;
 use crate::app::panels::Panel;
-use crate::app::state::State;
+use crate::app::state::{State, ViewStep};
 use crate::app::widgets::regions::Way;
 use marraztu_core::base::math::Axis;
 use marraztu_core::edit::framing::Side as LookSide;
@@ -214,6 +214,9 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::LookFront => look_from(LookSide::Front),
         Action::LookRight => look_from(LookSide::Right),
         Action::LookTop => look_from(LookSide::Top),
+        Action::PreviousView => to_viewpoint(state, ViewStep::Earlier, Refusal::NoEarlierView),
+        Action::NextView => to_viewpoint(state, ViewStep::Later, Refusal::NoLaterView),
+        Action::SavedView => to_viewpoint(state, ViewStep::Saved, Refusal::AtSavedView),
         Action::WhyUnseen => object(state).map(Intent::WhyUnseen),
         Action::ExplainPixel => show(|state| {
             state.explaining ^= true;
@@ -301,6 +304,11 @@ fn selected(state: &State) -> Result<ItemId, Refusal> {
 
 fn object(state: &State) -> Result<ObjectId, Refusal> {
     state.view.object.ok_or(Refusal::NoObject)
+}
+
+fn to_viewpoint(state: &State, step: ViewStep, refusal: Refusal) -> Resolved {
+    let found = state.viewpoints.at(step, &state.scene, &state.view);
+    found.map(|_| Intent::ToViewpoint(step)).ok_or(refusal)
 }
 
 fn add_shape(state: &State, shape: Shape) -> Resolved {

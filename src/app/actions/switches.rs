@@ -130,6 +130,7 @@ impl Action {
             Self::NextItem | Self::NextPolygon | Self::NextSubject => return None,
             Self::StepXUp | Self::StepXDown | Self::StepYUp | Self::StepYDown => return None,
             Self::StepZUp | Self::StepZDown | Self::FrameSelection | Self::FrameAll => return None,
+            Self::PreviousView | Self::NextView | Self::SavedView => return None,
             Self::LookFront | Self::LookRight | Self::LookTop => return None,
             Self::LookBack | Self::LookLeft | Self::LookBottom => return None,
             Self::ApertureUp | Self::ApertureDown | Self::RedUp | Self::RedDown => return None,

@@ -9,7 +9,9 @@ use egui::Key;
 
 use super::info::StepName::{self, Amount, Around, Switched};
 use super::info::{ActionInfo, Group, ONCE, REPEATS, actions};
-use crate::app::chord::Chord::{Command, CommandShift, Either, Lower, Named, Shifted, Text, Upper};
+use crate::app::chord::Chord::{
+    Alt, Command, CommandShift, Either, Lower, Named, Shifted, Text, Upper,
+};
 use crate::app::panels::Panel;
 use marraztu_core::base::math::Axis;
 use marraztu_core::edit::transform::Sign;
@@ -133,16 +135,16 @@ actions! {
         "Plane" "Adds a square plane below all objects."
         "floor ground quad primitive shape new";
     AddCube Add ONCE []
-        "Cube" "Adds a cube, a fifth as large as the scene, at the origin."
+        "Cube" "Adds a cube, a fifth as large as the view, on the ground next to the others."
         "box primitive shape new";
     AddSphere Add ONCE []
-        "Sphere" "Adds a sphere, a fifth as large as the scene, at the origin."
+        "Sphere" "Adds a sphere, a fifth as large as the view, on the ground next to the others."
         "ball globe primitive shape new";
     AddCylinder Add ONCE []
-        "Cylinder" "Adds a cylinder, a fifth as large as the scene, at the origin."
+        "Cylinder" "Adds a cylinder, a fifth as large as the view, on the ground next to the others."
         "tube pipe primitive shape new";
     AddTorus Add ONCE []
-        "Torus" "Adds a torus, a fifth as large as the scene, at the origin."
+        "Torus" "Adds a torus, a fifth as large as the view, on the ground next to the others."
         "ring donut primitive shape new";
     AddCamera Add ONCE [Upper(Key::F)]
         "Camera..." "Asks for a material and adds a camera at the origin, looking along -Z."
@@ -326,6 +328,16 @@ actions! {
     FrameAll Camera ONCE [Named(Key::Home)]
         "Frame all" "Moves the camera so that everything visible fills the picture."
         "zoom fit home everything centre center reset view";
+    PreviousView Camera ONCE [Alt(Key::ArrowLeft)]
+        "Previous view" "Moves the camera back to where the last movement of the view began."
+        "undo view camera back earlier history orbit zoom lost";
+    NextView Camera ONCE [Alt(Key::ArrowRight)]
+        "Next view" "Moves the camera forward again, after Previous view."
+        "redo view camera forward later history";
+    SavedView Camera ONCE []
+        "Back to the saved view"
+        "Moves the camera to where it was when the scene was opened or last saved."
+        "reset view camera home restore original start file";
     LookFront Camera ONCE [Command(Key::Num1)]
         "Front view" "Looks from the front, along -Z."
         "camera ahead";

@@ -13,10 +13,10 @@ use super::App;
 use super::turning::usual_up;
 use crate::app::documents::loading::{Arrival, Arrived, Fetched, Wish, is_scene};
 use crate::app::documents::material_dialog::{details, opened, own_or_silver};
-use crate::app::state::{Notice, NoticeKind, Offer, State};
+use crate::app::state::{Notice, NoticeKind, Offer, State, Viewpoints};
 use crate::app::widgets::text::{file_name, one_or_count};
 use marraztu_core::base::Shared;
-use marraztu_core::edit::{Gesture, Refusal, framing, items, lighting, presenting};
+use marraztu_core::edit::{Gesture, Refusal, Viewpoint, framing, items, lighting, presenting};
 use marraztu_core::scene::{
     Command, Item, LoadOptions, MaterialChoice, Object, Pose, Scene, UpAxis, View,
 };
@@ -157,7 +157,11 @@ impl App {
             }
             Arrival::Dropped => {
                 let steps = self.state.view.steps;
-                self.change_then(command, Gesture::Whole, label, |state| state.view = view);
+                self.change_then(command, Gesture::Whole, label, |state| {
+                    state.view = view;
+                    let first = Viewpoint::of(&state.scene, &state.view);
+                    state.viewpoints = Viewpoints::new(first);
+                });
                 self.first_steps = Some(steps);
             }
         }

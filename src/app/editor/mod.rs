@@ -26,6 +26,7 @@ mod scenes;
 mod selecting;
 mod turning;
 mod unseen;
+mod viewing;
 mod walking;
 
 use std::collections::VecDeque;

@@ -140,6 +140,7 @@ impl App {
             Ok(Intent::Change(command)) => self.change(command, gesture, &label),
             Ok(Intent::Add(command, subject)) => self.add_all(command, subject, &label),
             Ok(Intent::Navigate(command)) => self.navigate(command, gesture),
+            Ok(Intent::ToViewpoint(step)) => self.go_to_viewpoint(step),
             Ok(Intent::View(view)) => self.show_view(*view),
             Ok(Intent::Select(selection)) => self.select(*selection, gesture),
             Ok(Intent::Show(change)) => change(&mut self.state),
@@ -277,6 +278,10 @@ impl App {
     }
 
     pub(crate) fn show_view(&mut self, view: View) {
+        self.noting_viewpoint(Gesture::Whole, |app| app.set_view(view));
+    }
+
+    pub(super) fn set_view(&mut self, view: View) {
         self.state.message = None;
         self.state.view = view;
         selection::settle(&self.state.scene, &mut self.state.view);
@@ -284,10 +289,12 @@ impl App {
 
     /// Selects an item alone.
     pub(crate) fn select(&mut self, selection: Selection, gesture: Gesture) {
-        if let Some(command) = selection.command {
-            self.navigate(command, gesture);
-        }
-        self.show_view(selection.view);
+        self.noting_viewpoint(gesture, |app| {
+            if let Some(command) = selection.command {
+                app.move_view(command, gesture);
+            }
+            app.set_view(selection.view);
+        });
         self.state.several = Others::default();
     }
 
@@ -328,6 +335,7 @@ impl App {
                 select(state);
                 let after = Selected::of(&state.view, &state.several);
                 state.history.note_selected(selected, after);
+                self.adapt_near(Gesture::Whole);
             }
             Err(error) => self.refuse(error.to_string()),
         }
@@ -335,15 +343,7 @@ impl App {
 
     /// Moves the view, which is not a step of the history.
     pub(crate) fn navigate(&mut self, command: Command, gesture: Gesture) {
-        let state = &mut self.state;
-        let repeats = state.next_repeat(gesture);
-        match state.history.navigate(&mut state.scene, command, gesture) {
-            Ok(()) => {
-                (state.gesture, state.repeats) = (gesture, repeats);
-                state.message = None;
-            }
-            Err(error) => self.refuse(error.to_string()),
-        }
+        self.noting_viewpoint(gesture, |app| app.move_view(command, gesture));
     }
 
     /// Shows in the status line why a request was refused.

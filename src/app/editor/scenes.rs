@@ -13,7 +13,7 @@ use crate::app::documents::material_dialog::{details, short};
 use crate::app::documents::wanted::{After, ChangedFile, Wanted};
 use crate::app::state::{Notice, NoticeKind, State};
 use crate::app::widgets::text::file_name;
-use marraztu_core::edit::selection;
+use marraztu_core::edit::{Viewpoint, selection};
 use marraztu_io::{
     self as io, Finding, FindingKind, LoadError, Opened, SCENE_ENDING, SceneFileError,
 };
@@ -80,6 +80,7 @@ impl App {
             self.state.tell(Some(text));
         } else {
             self.state.history.mark_saved();
+            self.state.viewpoints.saved = Viewpoint::of(&self.state.scene, &self.state.view);
             self.state.content = Some(content);
             self.state.path = Some(path);
         }

@@ -28,6 +28,7 @@ impl App {
     pub(crate) fn abandon(&mut self, gesture: Gesture) {
         let selected = self.state.history.selected_before().cloned();
         self.walk(selected.as_ref(), |state| state.history.abandon(&mut state.scene, gesture));
+        self.state.viewpoints.abandon(gesture);
     }
 
     /// Crosses one step of the history and restores the selection on its other side.
@@ -45,6 +46,7 @@ impl App {
             None => selection::follow(&before, scene, view),
         }
         self.aim_again(&before);
+        self.adapt_near(Gesture::Whole);
         crossed
     }
 

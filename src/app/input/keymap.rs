@@ -125,6 +125,9 @@ fn chord_named(name: &str) -> Option<Chord> {
     if let Some(key) = name.strip_prefix("Ctrl+").or_else(|| name.strip_prefix("Cmd+")) {
         return Key::from_name(key).map(Chord::Command);
     }
+    if let Some(key) = name.strip_prefix("Alt+") {
+        return Key::from_name(key).map(Chord::Alt);
+    }
     if let Some(key) = name.strip_prefix("Shift+") {
         return Key::from_name(key).map(Chord::Shifted);
     }
@@ -147,7 +150,9 @@ pub(crate) fn chord_of(key: Key, modifiers: egui::Modifiers) -> Option<Chord> {
     let is_letter = key.name().len() == 1 && key.name().chars().all(char::is_alphanumeric);
     let is_digit = key.name().chars().all(|letter| letter.is_ascii_digit());
     if modifiers.alt {
-        return None;
+        // With Alt, letters may belong to another layer of the layout.
+        let types = is_letter || modifiers.command || modifiers.shift;
+        return (!types).then_some(Chord::Alt(key));
     }
     Some(match (modifiers.command, modifiers.shift) {
         (true, false) => Chord::Command(key),

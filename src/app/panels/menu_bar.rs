@@ -30,7 +30,7 @@ const HELP: [Action; 4] = [
 const PREFERENCES: [Action; 1] = [Action::Panel(Panel::Preferences)];
 
 /// Actions that begin a new section of a menu: a separator precedes each of them.
-const PARTS: [Action; 22] = [
+const PARTS: [Action; 23] = [
     Action::Load,
     Action::Save,
     Action::SavePicture,
@@ -48,6 +48,7 @@ const PARTS: [Action; 22] = [
     Action::AddSun,
     Action::ToggleBackFaces,
     Action::ExplainPixel,
+    Action::PreviousView,
     Action::LookFront,
     Action::WhyUnseen,
     Action::SoloLight,

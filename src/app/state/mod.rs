@@ -5,6 +5,7 @@ pub mod laboratory;
 mod last_picture;
 pub mod layout;
 mod notices;
+mod viewpoints;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -21,14 +22,17 @@ pub use last_picture::{ExplainedPixel, Late, Measured, Plan, Statistics};
 use layout::Layout;
 use marraztu_core::accuracy::{Samples, Settings, Shot};
 use marraztu_core::base::image::Size;
+use marraztu_core::edit::near_plane::MovedNear;
 use marraztu_core::edit::several::Others;
-use marraztu_core::edit::{Gesture, GesturePhase, History, selection};
+use marraztu_core::edit::{Gesture, GesturePhase, History, Viewpoint, selection};
 use marraztu_core::scene::{ItemId, Light, LightId, Object, Scene, UpAxis, View};
 use marraztu_io::{Fingerprint, Helpers, Sources, WindowState, is_example};
 use marraztu_lab::picture_source::Reference;
 use marraztu_lab::report::Report;
 pub use notices::{Message, MissingFiles, Notice, NoticeKind, Offer, Tone};
 pub(crate) use notices::{NoticeGroup, OUT_OF_VIEW};
+pub(crate) use viewpoints::ViewStep;
+pub use viewpoints::Viewpoints;
 
 /// The number of items from which the outline has a filter.
 const MANY: usize = 12;
@@ -46,6 +50,10 @@ pub struct State {
     pub drawing: DrawingChoices,
     /// The history of changes.
     pub history: History,
+    /// The viewpoints of the past.
+    pub viewpoints: Viewpoints,
+    /// The near plane that was moved automatically, if it was.
+    pub(crate) moved_near: Option<MovedNear>,
     /// The scene's file, if it has one.
     pub path: Option<PathBuf>,
     /// The last message, for the status line.
@@ -149,6 +157,8 @@ impl State {
     /// Creates the state of a new scene, without history.
     pub fn new(scene: Scene, view: View) -> Self {
         Self {
+            viewpoints: Viewpoints::new(Viewpoint::of(&scene, &view)),
+            moved_near: None,
             scene,
             view,
             settings: Settings::default(),

@@ -271,6 +271,7 @@ impl Hostile {
         let mut lens = Lens {
             half_angle: self.amount(89.0),
             near: self.amount(2.0),
+            automatic_near: self.bool(),
             far: self.amount(4000.0),
             half_size: self.amount(500.0),
             parallel_near: self.number(10.0),

@@ -167,6 +167,7 @@ pub fn lens(lens: &Lens, r: f64) -> (f64, Lens) {
     let framed = Lens {
         half_angle: lens.half_angle,
         near,
+        automatic_near: lens.automatic_near,
         far,
         half_size: 1.1 * r,
         parallel_near: lens.parallel_near.min(near),

@@ -5,6 +5,7 @@
 
 use glam::{DVec2, DVec3};
 
+use super::surfaces::{self, Ray};
 use super::transform::{effective_pose, moved, moved_about, orbited};
 use super::{Change, GesturePhase, Refusal, set_transform};
 use crate::base::image::Size;
@@ -12,6 +13,12 @@ use crate::scene::{CameraMode, Lens, Observer, Pose, Projection, Scene, View};
 
 /// The factor that each notch of the wheel applies to the distance.
 pub const NOTCH: f64 = 0.9;
+
+/// How near the eye may come to a surface, as a part of the extent of the object.
+const CLEARANCE: f64 = 1e-5;
+
+/// The same in analysis, where the camera orbits the object as a whole.
+const ORBIT_CLEARANCE: f64 = 2.5e-4;
 
 /// A point of the picture to zoom to.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,7 +70,7 @@ pub fn orbit(scene: &Scene, view: &View, yaw: f64, pitch: f64, phase: GesturePha
 /// If the observer is an object.
 pub fn pan(scene: &Scene, view: &View, pixels: DVec2, size: Size, phase: GesturePhase) -> Change {
     let pose = looking_pose(scene, view)?;
-    let units = pixels * units_per_pixel(scene, view, size, depth(scene, view, &pose));
+    let units = pixels * units_per_pixel(scene, view, size, depth_of_pivot(scene, view, &pose));
     let pose = moved(&pose, DVec3::new(-units.x, units.y, 0.0));
     set_transform::pose(scene, view.camera, Pose { mode: CameraMode::Fly, ..pose }, phase)
 }
@@ -83,6 +90,9 @@ pub fn fly(scene: &Scene, view: &View, delta: DVec3, phase: GesturePhase) -> Cha
 /// In perspective the eye moves along the ray through the pointer; in orthographic projection the
 /// half-size changes. In both cases the hit stays under the pointer. In analysis the camera moves
 /// along its axis, and stops at the distance of the near plane from the centre.
+///
+/// Towards a surface, each notch takes a part of the distance that is left, so the eye slows down
+/// and never passes the surface: neither the one under the pointer nor one on the way.
 ///
 /// # Errors
 /// If the observer is an object, or the camera is at its nearest distance.
@@ -110,24 +120,90 @@ pub fn zoom(
             set_transform::pose_and_lens(scene, view.camera, pose, lens, phase)
         }
         (Projection::Perspective, Some(centre)) => {
-            let away = pose.eye.distance(centre) * (left - 1.0);
+            let ray = ray_through(scene, view, pointer.at, size);
+            let away = away_from(scene, view, &pose, [centre, pose.axes * ray], left)?;
             let pose = moved_about(scene, view, centre, DVec3::Z * away)?;
             set_transform::pose(scene, view.camera, pose, phase)
         }
         (Projection::Perspective, None) => {
-            let lens = scene.selected_camera(view).lens;
-            let seen = pointer.depth.filter(|depth| *depth > 0.0 && depth.is_finite());
-            let depth = seen.unwrap_or_else(|| depth(scene, view, &pose));
-            let slope = libm::tan(lens.half_angle.to_radians());
-            let aside = from_middle(pointer.at, size) * shown_per_pixel(slope, size);
-            let ray = aside.extend(-1.0);
-            set_transform::pose(
-                scene,
-                view.camera,
-                moved(&pose, ray * (depth * (1.0 - left))),
-                phase,
-            )
+            let ray = ray_through(scene, view, pointer.at, size);
+            let step = step_along(scene, view, &pose, ray, pointer.depth, left)?;
+            set_transform::pose(scene, view.camera, moved(&pose, ray * step), phase)
         }
+    }
+}
+
+/// Returns the movement in analysis along the camera's axis, away from the centre that is orbited,
+/// if `left` of the distance is to remain. `under` is the direction through the pointer.
+fn away_from(
+    scene: &Scene,
+    view: &View,
+    pose: &Pose,
+    [centre, under]: [DVec3; 2],
+    left: f64,
+) -> Result<f64, Refusal> {
+    let distance = pose.eye.distance(centre);
+    if left >= 1.0 {
+        return Ok(distance * (left - 1.0));
+    }
+    let axis = (centre - pose.eye) / distance.max(f64::MIN_POSITIVE);
+    let before = |along| Approach::new(scene, view, pose, along, ORBIT_CLEARANCE);
+    let steps = [axis, under].into_iter().filter_map(before).map(|surface| surface.step(left));
+    let step = steps.fold(distance * (1.0 - left), f64::min);
+    if step > 0.0 { Ok(-step) } else { Err(Refusal::Nearest) }
+}
+
+/// Returns the movement in fly along a direction of the camera's frame, at depth 1, if `left` of the
+/// distance is to remain. `shown` is the depth in the picture, which counts if no surface is on the
+/// way: it may be older than the pose.
+fn step_along(
+    scene: &Scene,
+    view: &View,
+    pose: &Pose,
+    ray: DVec3,
+    shown: Option<f64>,
+    left: f64,
+) -> Result<f64, Refusal> {
+    let surface = Approach::new(scene, view, pose, pose.axes * ray, CLEARANCE);
+    let shown = shown.filter(|depth| *depth > 0.0 && depth.is_finite());
+    let depth = surface.map(|it| it.depth).or(shown);
+    let step = depth.unwrap_or_else(|| depth_of_pivot(scene, view, pose)) * (1.0 - left);
+    if left >= 1.0 {
+        return Ok(step);
+    }
+    let step = surface.map_or(step, |surface| step.min(surface.step(left)));
+    if step > 0.0 { Ok(step) } else { Err(Refusal::NearestToSurface) }
+}
+
+/// Returns the direction through a point of the picture in the camera's frame, at depth 1.
+fn ray_through(scene: &Scene, view: &View, at: DVec2, size: Size) -> DVec3 {
+    let slope = libm::tan(scene.selected_camera(view).lens.half_angle.to_radians());
+    (from_middle(at, size) * shown_per_pixel(slope, size)).extend(-1.0)
+}
+
+/// A surface that the eye approaches.
+#[derive(Clone, Copy, Debug)]
+struct Approach {
+    /// Its distance along the ray.
+    depth: f64,
+    /// The least distance to keep.
+    least: f64,
+}
+
+impl Approach {
+    /// Finds the first visible surface along a ray from the eye. `clearance` is a part of the
+    /// extent of the object; a fixed near plane must not reach the surface either.
+    fn new(scene: &Scene, view: &View, pose: &Pose, along: DVec3, clearance: f64) -> Option<Self> {
+        let lens = scene.selected_camera(view).lens;
+        let ray = Ray { from: pose.eye, along };
+        let cut = if lens.automatic_near { 0.0 } else { lens.near };
+        let met = surfaces::first_along(scene, view, ray, cut)?;
+        Some(Self { depth: met.way, least: (met.extent * clearance).max(cut) })
+    }
+
+    /// Returns the step that leaves this part of the distance, but at least the clearance.
+    fn step(self, left: f64) -> f64 {
+        (self.depth * (1.0 - left)).min(self.depth - self.least)
     }
 }
 
@@ -158,7 +234,7 @@ fn pivot(scene: &Scene, view: &View) -> DVec3 {
 
 /// Returns the depth of the pivot if it is in front of the camera, otherwise its distance, and at
 /// least the near plane. Thus a drag always moves the view, and the wheel passes through the pivot.
-fn depth(scene: &Scene, view: &View, pose: &Pose) -> f64 {
+fn depth_of_pivot(scene: &Scene, view: &View, pose: &Pose) -> f64 {
     let away = pose.eye - pivot(scene, view);
     let ahead = away.dot(pose.axes.z_axis);
     let near = scene.selected_camera(view).lens.near;

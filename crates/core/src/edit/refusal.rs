@@ -65,6 +65,14 @@ pub enum Refusal {
     NoDirection,
     #[error("the camera cannot come nearer to the object's centre")]
     Nearest,
+    #[error("the camera cannot come nearer to this surface")]
+    NearestToSurface,
+    #[error("there is no earlier view")]
+    NoEarlierView,
+    #[error("there is no later view")]
+    NoLaterView,
+    #[error("this is the saved view")]
+    AtSavedView,
     #[error("the observer is an object: press C to look through the camera")]
     ObjectLooks,
     #[error("the view is from this camera: drag the view instead")]

@@ -104,6 +104,9 @@ pub struct Lens {
     pub half_angle: f64,
     /// The near plane in perspective: more than 0.
     pub near: f64,
+    /// Whether the window moves the near plane towards the eye where it would cut a surface.
+    #[serde(skip_serializing_if = "is_on")]
+    pub automatic_near: bool,
     /// The far plane in perspective: more than `near`.
     pub far: f64,
     /// Units to each side of the axis in orthographic projection, across the shorter side: above 0.
@@ -114,11 +117,17 @@ pub struct Lens {
     pub parallel_far: f64,
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+const fn is_on(automatic: &bool) -> bool {
+    *automatic
+}
+
 impl Default for Lens {
     fn default() -> Self {
         Self {
             half_angle: 22.5,
             near: 1.0,
+            automatic_near: true,
             far: 2000.0,
             half_size: 500.0,
             parallel_near: 0.0,
@@ -130,7 +139,7 @@ impl Default for Lens {
 impl Lens {
     /// Returns whether the lens gives a valid projection.
     pub fn is_valid(&self) -> bool {
-        let Self { half_angle, near, far, half_size, parallel_near, parallel_far } = *self;
+        let Self { half_angle, near, far, half_size, parallel_near, parallel_far, .. } = *self;
         let finite = [half_angle, near, far, half_size, parallel_near, parallel_far];
         finite.iter().all(|x| x.is_finite())
             && half_angle > 0.0

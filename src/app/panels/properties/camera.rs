@@ -115,7 +115,13 @@ impl Shown<'_> {
         set(angle, &|angle, lens| Lens { half_angle: angle / 2.0, ..lens });
         let number = Number::new("Near", "Distance of the near plane: more than 0").speed(0.1);
         let near = number_row(ui, "Near", number, lens.near);
-        set(near, &|near, lens| Lens { near, ..lens });
+        set(near, &|near, lens| Lens { near, automatic_near: false, ..lens });
+        let automatic = lens.automatic_near;
+        let hint = "Moves the near plane towards the eye before it cuts a surface in view";
+        if Switch::new("Automatic near", automatic).ui(ui).on_hover_text(hint).clicked() {
+            let toggle = |_, lens| Lens { automatic_near: !automatic, ..lens };
+            set(Some((lens.near, Gesture::Whole)), &toggle);
+        }
         let number = Number::new("Far", "Distance of the far plane: more than Near").speed(5.0);
         let far = number_row(ui, "Far", number, lens.far);
         set(far, &|far, lens| Lens { far, ..lens });
