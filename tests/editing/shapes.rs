@@ -1,7 +1,7 @@
 //! New shapes: their size and place.
 //!
-//! Catches: a shape around the camera, in another object, outside of the picture or in the air; a size
-//! that follows a ground instead of the view.
+//! Catches: a shape around the camera, in another object, outside of the picture or in the air; a
+//! size that follows a ground instead of the view.
 
 use glam::{DMat3, DMat4, DVec3};
 use marraztu_core::base::math;

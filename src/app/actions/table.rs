@@ -141,7 +141,8 @@ actions! {
         "Sphere" "Adds a sphere, a fifth as large as the view, on the ground next to the others."
         "ball globe primitive shape new";
     AddCylinder Add ONCE []
-        "Cylinder" "Adds a cylinder, a fifth as large as the view, on the ground next to the others."
+        "Cylinder"
+        "Adds a cylinder, a fifth as large as the view, on the ground next to the others."
         "tube pipe primitive shape new";
     AddTorus Add ONCE []
         "Torus" "Adds a torus, a fifth as large as the view, on the ground next to the others."

@@ -88,7 +88,9 @@ impl Site {
             let floor = self.floor_below(*cell);
             at(DVec3::new(cell.x, floor + half.y, cell.z))
         };
-        let is_seen = |place: &Bounds| self.sight.rectangle(place).is_some_and(is_inside);
+        let is_seen = |place: &Bounds| {
+            self.sight.rectangle(place).is_some_and(is_inside) && self.is_as_deep(place)
+        };
         let find = |test: &dyn Fn(&Bounds) -> bool| {
             cells.iter().map(on_floor).find(|place| test(place) && self.is_free(place))
         };
@@ -123,7 +125,8 @@ impl Site {
         steps.into_iter().map(cell).collect()
     }
 
-    /// Returns the height of the highest floor at a place; outside of all floors, the lowest height.
+    /// Returns the height of the highest floor at a place; outside of all floors, the lowest
+    /// height.
     fn floor_below(&self, at: DVec3) -> f64 {
         let is_above = |floor: &&Bounds| {
             let nearest = floor.nearest_to(at);
@@ -143,6 +146,15 @@ impl Site {
         let under = boxes.filter(|bounds| overlap(bounds, &column));
         let top = under.map(|bounds| bounds.max.y).fold(place.min.y, f64::max);
         place.centre().with_y(top + half_height)
+    }
+
+    /// Returns whether a shape looks about as large at a place as in the middle.
+    fn is_as_deep(&self, place: &Bounds) -> bool {
+        let part = self.sight.depth(place.centre()) / self.sight.depth(self.focus);
+        match self.sight.projection {
+            Projection::Perspective => (0.8..=1.25).contains(&part),
+            Projection::Orthographic => true,
+        }
     }
 
     /// Returns whether a place is at least a gap away from all boxes.

@@ -153,9 +153,9 @@ fn away_from(
     if step > 0.0 { Ok(-step) } else { Err(Refusal::Nearest) }
 }
 
-/// Returns the movement in fly along a direction of the camera's frame, at depth 1, if `left` of the
-/// distance is to remain. `shown` is the depth in the picture, which counts if no surface is on the
-/// way: it may be older than the pose.
+/// Returns the movement in fly along a direction of the camera's frame, at depth 1, if `left` of
+/// the distance is to remain. `shown` is the depth in the picture, which counts if no surface is on
+/// the way: it may be older than the pose.
 fn step_along(
     scene: &Scene,
     view: &View,

@@ -54,11 +54,11 @@ pub fn adapted(
 /// Returns the new distance of the near plane, from its present distance, its usual distance, and
 /// the depth of the nearest surface in view.
 fn distance(near: f64, usual: f64, nearest: f64) -> f64 {
-    if nearest.is_nan() || nearest <= 0.0 || (2.0 * near..=1000.0 * near).contains(&nearest) {
-        return near;
-    }
     if nearest >= 200.0 * usual {
         return usual;
+    }
+    if nearest.is_nan() || nearest <= 0.0 || (2.0 * near..=1000.0 * near).contains(&nearest) {
+        return near;
     }
     // As if parsed from text, so the number has one digit in files and fields.
     let exponent = libm::floor(libm::log10(nearest / 100.0));
@@ -83,6 +83,7 @@ mod tests {
             (0.01, 1.0, 11.0, 0.1),
             (0.01, 1.0, 300.0, 1.0),
             (0.01, 0.113, 88.0, 0.113),
+            (0.1, 0.113, 88.0, 0.113),
             (10.0, 10.0, 15.0, 0.1),
             (0.1, 10.0, 5000.0, 10.0),
             (1.0, 1.0, 0.0, 1.0),

@@ -1,7 +1,7 @@
 //! The surfaces in front of the observer: the first one along a ray, and the nearest depth in view.
 //!
-//! Both count the faces that the picture shows, without hidden parts and culled back faces. A picture
-//! knows the same, but it may be older than the camera's pose.
+//! Both count the faces that the picture shows, without hidden parts and culled back faces. A
+//! picture knows the same, but it may be older than the camera's pose.
 
 use glam::{DMat4, DVec2, DVec3};
 use rayon::prelude::*;

@@ -25,9 +25,9 @@ impl Viewpoint {
         Self { camera, pose, lens, observer, projection }
     }
 
-    /// Returns whether two viewpoints give the same picture of the same scene. The near plane
-    /// and the field of view do not count: the first follows the pose, and a change of the second is
-    /// a step of the history.
+    /// Returns whether two viewpoints give the same picture of the same scene. The near plane and
+    /// the field of view do not count: the first follows the pose, and a change of the second is a
+    /// step of the history.
     pub fn is_like(&self, other: &Self) -> bool {
         let Lens { near, automatic_near, half_angle, .. } = other.lens;
         let lens = Lens { near, automatic_near, half_angle, ..self.lens };

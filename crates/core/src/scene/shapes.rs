@@ -1,9 +1,10 @@
 //! The built-in shapes: ground, plane, cube, sphere, cylinder, torus.
 //!
 //! Each shape is centred at the origin. Its size, the width, is part of the mesh: an object of this
-//! shape has scale 1, so steps and amounts along its axes count in units of the world. Vertices lie on the exact surface, and corners have the normals of that surface, rounded to
-//! single precision. Flat faces are exact. A round shape lies inside its surface by at most 1 -
-//! cos(pi / N) of the radius for N faces around.
+//! shape has scale 1, so steps and amounts along its axes count in units of the world. Vertices lie
+//! on the exact surface, and corners have the normals of that surface, rounded to single precision.
+//! Flat faces are exact. A round shape lies inside its surface by at most 1 - cos(pi / N) of the
+//! radius for N faces around.
 
 use std::sync::OnceLock;
 
