@@ -28,7 +28,7 @@ impl Page {
     /// Returns a page of another size and scale that has shown no frame yet.
     fn of(size: [usize; 2], scale: f32, file: Option<&Path>) -> Self {
         let files = file.map(Path::to_owned).into_iter().collect();
-        let shell = CanvasShell::new(size, scale, files).expect("there are threads");
+        let shell = CanvasShell::new(size, scale, files);
         Self { shell, server: None, time: 0.0 }
     }
 
@@ -41,7 +41,7 @@ impl Page {
 
     /// Opens a page with a server that draws its viewport.
     fn open_with_server() -> Self {
-        let mut shell = CanvasShell::new(SIZE, 1.0, Vec::new()).expect("there are threads");
+        let mut shell = CanvasShell::new(SIZE, 1.0, Vec::new());
         shell.draw_elsewhere();
         let mut page = Self { shell, server: Some(DrawingServer::new(|| false)), time: 0.0 };
         page.rest();

@@ -8,7 +8,12 @@ use egui::{IconData, ViewportBuilder};
 use crate::app::editor::App;
 use crate::app::shell::{self, Shell, StartError};
 use marraztu_core::accuracy::AccuracyPreset;
+use marraztu_core::base::threads::{self, Caller};
 use marraztu_io::{OwnFolders, Preferences};
+
+/// The threads that libraries of the window start without looking at a limit, with those of the
+/// editor.
+const THREADS: usize = 16;
 
 /// Opens the editor with these files and returns when the user leaves it. Models are shown alone,
 /// framed and lit; a scene replaces the first one. A preset sets the accuracy of the first scene.
@@ -21,6 +26,9 @@ pub fn run(
     preset: Option<&'static AccuracyPreset>,
 ) -> Result<(), StartError> {
     shell::find_display()?;
+    if !threads::are_available(THREADS) || threads::start(None, Caller::Waits).is_err() {
+        return Err(StartError::Threads);
+    }
     let named = files.to_vec();
     let own = OwnFolders::of_user().map(|folders| (Preferences::load(&folders), folders));
     let window = window(own.as_ref().map(|((preferences, _), _)| preferences));

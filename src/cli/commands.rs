@@ -4,6 +4,7 @@
 use std::path::PathBuf;
 
 use clap::{Parser, Subcommand};
+use marraztu_core::base::threads::Caller;
 
 #[cfg(feature = "desktop")]
 use super::arguments::choice;
@@ -90,6 +91,32 @@ pub(crate) enum Headless {
     Lab(Box<super::lab::Lab>),
     /// Check that this processor draws the same pictures as all others
     Verify(super::verify::Verify),
+}
+
+impl Headless {
+    /// Returns the number of threads that draw, one per core by default, and whether this thread is
+    /// one of them.
+    pub(super) fn threads(&self) -> (Option<usize>, Caller) {
+        let threads = match self {
+            Self::Render(arguments) => arguments.picture.threads,
+            Self::Turntable(arguments) => arguments.picture.threads,
+            Self::Plan(arguments) => arguments.picture.threads,
+            Self::Explain(arguments) => arguments.picture.threads,
+            // Waking this thread after each picture would be a part of the times.
+            #[cfg(not(target_family = "wasm"))]
+            Self::Lab(arguments) => return (arguments.threads, Caller::Joins),
+            // Its threads have their own pools.
+            #[cfg(not(target_family = "wasm"))]
+            Self::Batch(_) => Some(1),
+            #[cfg(not(target_family = "wasm"))]
+            Self::Merge(_) | Self::Compare(_) | Self::Views(_) => None,
+            #[cfg(feature = "desktop")]
+            Self::Keys(_) => None,
+            Self::Thumbnail(_) | Self::Export(_) | Self::Info(_) | Self::Verify(_) => None,
+        };
+        let caller = if threads.is_some() { Caller::Joins } else { Caller::Waits };
+        (threads, caller)
+    }
 }
 
 #[cfg(feature = "desktop")]

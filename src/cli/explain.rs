@@ -24,7 +24,7 @@ Examples:
   marraztu explain teapot.obj --size 200x200 --at 90,110 --shading vertex")]
 pub(crate) struct Explain {
     #[command(flatten)]
-    picture: PictureArguments,
+    pub(super) picture: PictureArguments,
 
     /// The column and the row of the pixel, from the upper left
     #[arg(long, value_name = "X,Y", value_parser = parse_pixel)]

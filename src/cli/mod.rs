@@ -44,6 +44,7 @@ use std::process::ExitCode;
 
 use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches as _};
+use marraztu_core::base::threads::{self, Caller};
 
 use self::commands::{Arguments, Headless};
 use self::failure::Failure;
@@ -72,6 +73,9 @@ pub(crate) fn run() -> ExitCode {
     if marraztu_render::simd::levels().is_empty() {
         say("error", &"drawing needs a processor with SSE4.2 (x86-64-v2)");
         return ExitCode::FAILURE;
+    }
+    if let Some(command) = &arguments.command {
+        start_threads(command);
     }
     let done = match arguments.command {
         Some(Headless::Render(arguments)) => render::render(&arguments),
@@ -129,12 +133,13 @@ const fn corrected(wrong: clap::Error) -> clap::Error {
     wrong
 }
 
-/// Adds this thread to the drawing pool of `threads` threads, or one per core. It would otherwise
-/// idle, and have to be woken when the others are done.
-fn draw_along(threads: Option<usize>) {
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0));
+/// Starts the threads of a command: fewer than wanted if the system limits them, and at least this
+/// one.
+fn start_threads(command: &Headless) {
+    let (threads, caller) = command.threads();
+    let started = threads::start(threads, caller);
     // This fails only if the pool exists already, and nothing has started it.
-    let _ = pool.use_current_thread().build_global();
+    let _ = started.or_else(|_limit| threads::start(Some(1), Caller::Joins));
 }
 
 /// Prints clap's message. This includes help and version, with exit status 0.

@@ -29,7 +29,7 @@ Examples:
   marraztu plan room.marraztu --shading vertex --format csv")]
 pub(crate) struct Plan {
     #[command(flatten)]
-    picture: PictureArguments,
+    pub(super) picture: PictureArguments,
 
     /// Measure the time of each effect, with pairs of frames with and without it
     #[arg(long)]

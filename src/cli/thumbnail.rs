@@ -12,6 +12,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use marraztu_core::accuracy::{Samples, Settings};
 use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::base::threads;
 use marraztu_io::{self as io, Input, PICTURE_FORMATS, Progress, Sources};
 use marraztu_render::accel::Accelerated as _;
 use marraztu_render::{Renderer, without_ground};
@@ -60,13 +61,12 @@ pub(super) fn thumbnail(arguments: &Thumbnail) -> Result<(), Failure> {
     }
     let (files, side) = ([file.clone(), out.clone()], usize::from(*size));
     let draw = move || draw(&files, Size::new(side, side), &sender);
-    // WebAssembly has no threads.
-    if cfg!(target_family = "wasm") {
+    let thread = Builder::new().name("thumbnail".to_owned()).stack_size(STACK);
+    // Without a further thread, as in WebAssembly, both pictures are drawn before one is written.
+    if threads::is_alone() || thread.spawn(draw.clone()).is_err() {
         draw();
-    } else {
-        let thread = Builder::new().name("thumbnail".to_owned()).stack_size(STACK).spawn(draw);
-        thread.map_err(|error| Failure::Usage(format!("a thread cannot be started: {error}")))?;
     }
+    drop(draw);
     // There is no limit for the coarse picture: late is better than none.
     let gone = || Failure::Absent("the picture could not be drawn".to_owned());
     let mut picture = pictures.recv().map_err(|_closed| gone())??;

@@ -55,7 +55,7 @@ pub(crate) struct Turntable {
     #[arg(long)]
     transparent: bool,
     #[command(flatten)]
-    picture: PictureArguments,
+    pub(super) picture: PictureArguments,
 }
 
 /// Draws the turn described by the arguments.

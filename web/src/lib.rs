@@ -75,16 +75,11 @@ pub extern "C" fn output() -> *const u8 {
 }
 
 /// Starts the editor on a canvas of `width` x `height` pixels, with `scale` pixels per point, and
-/// opens the files whose paths are in the input. Returns 0, or 1 if it cannot start.
+/// opens the files whose paths are in the input. Returns 0.
 #[unsafe(no_mangle)]
 pub extern "C" fn start(width: usize, height: usize, scale: f32) -> u32 {
-    with(|page| match CanvasShell::new([width, height], scale, page.paths()) {
-        Ok(shell) => {
-            page.shell = Some(shell);
-            0
-        }
-        Err(_no_threads) => 1,
-    })
+    with(|page| page.shell = Some(CanvasShell::new([width, height], scale, page.paths())));
+    0
 }
 
 /// Lets another instance draw the viewport: its [`ask`] takes each [`request`], and [`reply`] takes

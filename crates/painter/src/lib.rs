@@ -22,10 +22,9 @@
 //! let frame = WindowFrame { primitives, scale: 1.0, ground: Color32::WHITE };
 //! let mut pixels = vec![0; 64 * 48];
 //! let mut canvas = Canvas { pixels: &mut pixels, size: [64, 48], age: 0 };
-//! WindowPainter::new()?.paint(&mut canvas, frame, &mut output.textures_delta);
+//! WindowPainter::new().paint(&mut canvas, frame, &mut output.textures_delta);
 //! assert_eq!((pixels[0], pixels[24 * 64 + 32]), (0xff_ff_ff, 0xff_00_00));
 //! # output.textures_delta.clear();
-//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 mod blend;
@@ -78,7 +77,7 @@ pub struct Canvas<'a> {
 /// Paints a window, frame after frame.
 #[derive(Debug)]
 pub struct WindowPainter {
-    /// `None` without threads, in WebAssembly.
+    /// `None` without threads.
     pool: Option<rayon::ThreadPool>,
     textures: Textures,
     layers: Vec<Layer>,
@@ -113,19 +112,22 @@ struct Band {
     changes: VecDeque<Range<i32>>,
 }
 
+impl Default for WindowPainter {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
 impl WindowPainter {
     /// Creates a painter that has painted nothing.
-    ///
-    /// # Errors
-    /// If no threads can be started.
-    pub fn new() -> Result<Self, rayon::ThreadPoolBuildError> {
+    pub fn new() -> Self {
         // A separate pool, because the threads that draw the viewport may be busy for long.
         let threads = std::thread::available_parallelism().map_or(1, usize::from).min(8);
         let name = |i| format!("window {i}");
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).thread_name(name);
         let (textures, layers, bands) = (Textures::default(), Vec::new(), Vec::new());
-        let pool = if cfg!(target_family = "wasm") { None } else { Some(pool.build()?) };
-        Ok(Self { pool, textures, layers, bands, setting: None })
+        // At a limit of threads, and in WebAssembly, the calling thread paints.
+        Self { pool: pool.build().ok(), textures, layers, bands, setting: None }
     }
 
     /// Paints a frame and returns the areas that changed since the frame before it. If none did,

@@ -22,7 +22,7 @@ struct Desk {
 
 impl Desk {
     fn new() -> Self {
-        Self { painter: WindowPainter::new().unwrap(), pixels: vec![0; WIDTH * HEIGHT], age: 0 }
+        Self { painter: WindowPainter::new(), pixels: vec![0; WIDTH * HEIGHT], age: 0 }
     }
 
     fn paint(&mut self, meshes: &[(Rect, Mesh)], textures: &mut TexturesDelta) -> Vec<PixelBox> {

@@ -12,7 +12,6 @@ use std::time::Duration;
 
 use egui::{Context, Event, FullOutput, PlatformOutput, RawInput, Rect, Vec2};
 use egui::{ViewportId, ViewportInfo, pos2, vec2};
-use rayon::ThreadPoolBuildError;
 
 use super::LONGEST_SIDE;
 use crate::app::editor::App;
@@ -82,14 +81,7 @@ impl CanvasShell {
 
     /// Starts the editor on a canvas of `size` pixels, with `scale` pixels per point. It opens
     /// these files, or the first scene.
-    ///
-    /// # Errors
-    /// If no threads can be started, on systems that have them.
-    pub fn new(
-        size: [usize; 2],
-        scale: f32,
-        files: Vec<PathBuf>,
-    ) -> Result<Self, ThreadPoolBuildError> {
+    pub fn new(size: [usize; 2], scale: f32, files: Vec<PathBuf>) -> Self {
         let ctx = Context::default();
         // egui may lay out a frame twice, as in eframe.
         ctx.options_mut(|options| options.max_passes = TWICE);
@@ -104,10 +96,10 @@ impl CanvasShell {
         });
         let mut app = App::start(&ctx, own);
         app.open_at_start(&ctx, files);
-        Ok(Self {
+        Self {
             ctx,
             app,
-            painter: WindowPainter::new()?,
+            painter: WindowPainter::new(),
             output: None,
             input: RawInput { focused: true, ..RawInput::default() },
             pixels: vec![0; size[0] * size[1]],
@@ -117,7 +109,7 @@ impl CanvasShell {
             due,
             answer: None,
             told: Vec::new(),
-        })
+        }
     }
 
     /// Lets a [`DrawingServer`](crate::app::DrawingServer) of another instance draw the viewport.

@@ -8,6 +8,7 @@ pub mod math;
 pub mod once;
 pub mod rng;
 mod shared;
+pub mod threads;
 
 pub use byte_bounds::ByteBounds;
 pub use shared::Shared;

@@ -18,6 +18,7 @@ use marraztu_core::accuracy::{
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::base::rng::Rng;
+use marraztu_core::base::threads::{self, Caller};
 use marraztu_core::scene::{
     Command, Fill, Item, Mesh, MeshSource, Model, NONE, Normals, Object, Projection, Scene,
     SourceCorner, Texture, View,
@@ -39,19 +40,14 @@ pub struct TestPicture {
 }
 
 impl TestPicture {
-    /// Draws the picture with these instructions and this number of threads. WebAssembly has one
-    /// thread.
-    ///
-    /// # Panics
-    /// If the system cannot start that many threads.
+    /// Draws the picture with these instructions and this number of threads, or fewer if the system
+    /// limits them. Without a further thread, as in WebAssembly, the pool of the process draws.
     pub fn draw(&self, level: Level, threads: usize) -> Picture {
         let draw = || Renderer::new(level).render(&self.plan).clone();
-        if cfg!(target_family = "wasm") {
-            return draw();
+        match threads::pool(threads, Caller::Waits, "picture") {
+            Ok(pool) => pool.install(draw),
+            Err(_limit) => draw(),
         }
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-        let pool = pool.expect("the system gives threads");
-        pool.install(draw)
     }
 
     /// Returns the name of the picture as the name of a file without its ending.

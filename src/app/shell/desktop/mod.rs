@@ -47,6 +47,9 @@ pub enum StartError {
     /// The window is gone without having been closed.
     #[error("the window was lost: {0}")]
     Lost(String),
+    /// The system limits the number of threads.
+    #[error("the window needs more threads than this system allows (ulimit -u)")]
+    Threads,
     /// Another error.
     #[error("the window could not be opened: {0}")]
     Other(String),

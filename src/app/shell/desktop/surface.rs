@@ -30,8 +30,7 @@ impl Surface {
             softbuffer::Context::new(Arc::clone(window)).map_err(|error| other(&error))?;
         let surface = softbuffer::Surface::new(&context, Arc::clone(window));
         let surface = surface.map_err(|error| other(&error))?;
-        let painter = WindowPainter::new().map_err(|error| StartError::Other(error.to_string()))?;
-        Ok(Self { context, surface, painter, exposed: true, lost: true })
+        Ok(Self { context, surface, painter: WindowPainter::new(), exposed: true, lost: true })
     }
 
     /// Presents the whole window in the next frame, not only the changes.
