@@ -21,7 +21,6 @@ use marraztu_lab::timing::WallClock;
 use super::accuracy::Accuracy;
 use super::arguments::SceneArguments;
 use super::bar::Bar;
-use super::draw_along;
 use super::failure::Failure;
 use super::page::{self, check_page};
 use super::render::staged;
@@ -87,7 +86,7 @@ pub(crate) struct Lab {
     pixel: Option<Pixel>,
     /// Number of threads [default: one per core]
     #[arg(long, value_name = "N", value_parser = threads)]
-    threads: Option<usize>,
+    pub(super) threads: Option<usize>,
     #[command(flatten)]
     talk: Talk,
 
@@ -100,7 +99,9 @@ pub(crate) struct Lab {
 /// Runs the measurement and prints the report.
 pub(crate) fn lab(arguments: &Lab) -> Result<(), Failure> {
     arguments.talk.apply();
-    draw_along(arguments.threads);
+    if let Some(folder) = &arguments.out {
+        io::check_scheme(folder)?;
+    }
     if let Some(word) = &arguments.suite {
         return measure_suite(arguments, word);
     }

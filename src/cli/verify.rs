@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use fearless_simd::Level;
 use marraztu_core::base::image::Picture;
-use marraztu_io::{Progress, SaveError, save_picture};
+use marraztu_io::{Progress, SaveError, check_scheme, save_picture};
 use marraztu_lab::error::amplified;
 use marraztu_lab::instructions::{levels, name_of, named};
 use marraztu_lab::pictures::{self, TestPicture};
@@ -59,6 +59,7 @@ pub(crate) fn verify(arguments: &Verify) -> Result<(), Failure> {
     let levels = arguments.instructions.map_or_else(levels, |level| vec![level]);
     let out = arguments.out.as_deref();
     if let Some(folder) = out {
+        check_scheme(folder)?;
         let failed = |error| Failure::Usage(format!("{}: {error}", folder.display()));
         std::fs::create_dir_all(folder).map_err(failed)?;
     }

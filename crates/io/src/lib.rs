@@ -41,6 +41,7 @@ mod read;
 mod replace;
 mod scene_file;
 mod sources;
+mod spool;
 mod stamp;
 mod stl;
 mod texture;
@@ -73,12 +74,13 @@ pub use picture::{
 };
 pub use progress::{Cancelled, Progress};
 pub use read::{check_file, read_file};
-pub use replace::{NewFile, SaveError};
+pub use replace::{NewFile, SaveError, check_scheme};
 pub use scene_file::{
     Fragment, Known, Opened, SCENE_ENDING, SceneFileError, items_of_text, items_to_text,
     material_to_text, open, save, save_with_window, scene_of_message, scene_to_message, to_text,
 };
 pub use sources::Sources;
+pub use spool::Spool;
 pub use stamp::{encode_stamped, read_stamp, stamped_at_end};
 pub use stl::usual_crease;
 pub use texture::{

@@ -78,7 +78,7 @@ pub(super) fn create_part(target: &Path) -> std::io::Result<(File, PathBuf)> {
         let name = part_name(target, host(), own_process(), (random(), number));
         let part = folder(target).join(name);
         attempts += 1;
-        match OpenOptions::new().write(true).create_new(true).open(&part) {
+        match OpenOptions::new().read(true).write(true).create_new(true).open(&part) {
             Err(error) if error.kind() == ErrorKind::AlreadyExists && attempts < MOST_ATTEMPTS => {}
             opened => return opened.map(|file| (file, part)),
         }

@@ -61,11 +61,32 @@ pub(super) fn check_target(path: &Path) -> Result<(), SaveError> {
     }
 }
 
+/// Checks that a path is not an address such as `s3://pictures/a.png`, which would create the
+/// folder `s3:`.
+///
+/// # Errors
+/// If it is one.
+pub fn check_scheme(path: &Path) -> Result<(), SaveError> {
+    let text = path.to_string_lossy();
+    let is_letter = |sign: char| sign.is_ascii_alphanumeric() || "+-.".contains(sign);
+    match text.split_once("://") {
+        Some((scheme, _)) if !scheme.is_empty() && scheme.chars().all(is_letter) => {
+            let reason = format!(
+                "addresses ({scheme}://) cannot be written to; choose a file or folder of this \
+                 machine, and copy it there afterwards"
+            );
+            Err(SaveError::new(path, reason))
+        }
+        _ => Ok(()),
+    }
+}
+
 /// The most links that are followed, as on Linux.
 const MOST_LINKS: usize = 40;
 
 /// Returns the file to replace. Links are followed and stay links, even to a missing file.
 fn target(path: &Path) -> Result<PathBuf, SaveError> {
+    check_scheme(path)?;
     let mut target = path.to_owned();
     for _ in 0..MOST_LINKS {
         let Ok(next) = fs::read_link(&target) else { break };

@@ -15,7 +15,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use self::gif::GifWriter;
 use super::error::reason;
 use super::picture::{check_layer_target, check_picture_target, save_picture, sides_of};
-use super::replace::{SaveError, Worth, check_target, replace};
+use super::replace::{SaveError, Worth, check_scheme, check_target, replace};
 use super::sources::Sources;
 use marraztu_core::base::image::{Picture, Size};
 
@@ -147,6 +147,7 @@ impl AnimationWriter {
     /// # Errors
     /// If it cannot.
     pub fn check(path: &Path, sources: &Sources) -> Result<(), SaveError> {
+        check_scheme(path)?;
         sources.spare(path)?;
         let fail = |reason: &str| SaveError::new(path, reason);
         match AnimationFormat::of(path).map_err(|reason| fail(&reason))? {
