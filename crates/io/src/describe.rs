@@ -158,20 +158,23 @@ fn faces(mesh: &Mesh) -> String {
     if kinds.is_empty() { all } else { format!("{all} ({})", kinds.join(", ")) }
 }
 
-/// Says whether every edge has two polygons, and counts the edges that do not.
+/// Says whether the surface is closed, as for back-face culling, and counts the edges that do not
+/// have two polygons.
 fn closed(mesh: &Mesh) -> String {
     let edges = mesh.edges();
     let sides = |right: fn(usize) -> bool| {
         edges.iter().filter(|edge| right(mesh.edge_polygons(edge).len())).count()
     };
-    // Closed means that every edge joins exactly two polygons.
     let (borders, crowded) = (sides(|n| n == 1), sides(|n| n > 2));
     let all = number_of(edges.len(), "edge");
     if edges.is_empty() {
         return "no: there are no edges".to_owned();
     }
+    let is_closed = mesh.is_closed();
+    let yes = if is_closed { "yes" } else { "no" };
     if borders == 0 && crowded == 0 {
-        return format!("yes ({all}, each of two faces)");
+        let turned = if is_closed { "" } else { "; some neighbours have opposite windings" };
+        return format!("{yes} ({all}, each of two faces{turned})");
     }
     let mut faults = Vec::new();
     if borders > 0 {
@@ -188,7 +191,7 @@ fn closed(mesh: &Mesh) -> String {
             grouped(n)
         )),
     }
-    format!("no ({all}: {})", faults.join(", "))
+    format!("{yes} ({all}: {})", faults.join(", "))
 }
 
 fn describe_parts(model: &Model, text: &mut Text) {
@@ -317,5 +320,29 @@ findings        1
   pyramid.obj: a face refers to a vertex that the file does not have and is skipped (line 13)
 ";
         assert_eq!(describe(&loaded.unwrap()), expected);
+    }
+
+    #[test]
+    fn a_model_is_called_closed_if_its_back_faces_are_left_out() {
+        let cube = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n";
+        let sides = "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\n";
+        let split = "v 0 0 0\nv 0 0 1\nv 0 1 1\nv 0 1 0\n";
+        for (text, is_closed) in [
+            (format!("{cube}{sides}f 4 1 5 8\n"), true),
+            // The last side has its own vertices, as in files that split them at seams.
+            (format!("{cube}{sides}{split}f -1 -4 -3 -2\n"), true),
+            (format!("{cube}{sides}"), false),
+            // One side is turned: each edge has two faces, but they disagree.
+            (format!("{cube}{sides}f 8 5 1 4\n"), false),
+            // A wall in two directions inside the cube: some edges have four faces.
+            (format!("{cube}{sides}f 4 1 5 8\nf 1 2 7 8\nf 8 7 2 1\n"), true),
+        ] {
+            let options = LoadOptions::default();
+            let loaded = parse(text.as_bytes(), "a.obj", None, &options, &Progress::new());
+            let mesh = &loaded.unwrap().model.mesh;
+            assert_eq!(mesh.is_closed(), is_closed, "{text}");
+            let yes = if is_closed { "yes (" } else { "no (" };
+            assert!(closed(mesh).starts_with(yes), "{text}{}", closed(mesh));
+        }
     }
 }
