@@ -1,7 +1,8 @@
 //! Errors as Python's exceptions.
 
 use marraztu_io as io;
-use pyo3::exceptions::{PyException, PyMemoryError, PyOSError, PyRuntimeError, PyValueError};
+use pyo3::exceptions::{PyException, PyKeyboardInterrupt, PyMemoryError, PyOSError};
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
 pyo3::create_exception!(
@@ -22,6 +23,8 @@ pub(crate) enum Failure {
     Save(String),
     /// There is not enough memory.
     Memory(String),
+    /// A signal has ended the work. Its own exception is raised.
+    Interrupted,
     /// The process was forked while another thread was drawing.
     Forked,
     /// The library panicked.
@@ -84,6 +87,7 @@ impl From<Failure> for PyErr {
                     .and_then(|()| value.setattr("reason", reason));
                 set.err().unwrap_or(error)
             }),
+            Failure::Interrupted => PyKeyboardInterrupt::new_err(()),
             Failure::Forked => PyRuntimeError::new_err(
                 "this process was forked while another thread was drawing, so it cannot draw; \
                  start processes with the method \"spawn\": \

@@ -9,7 +9,7 @@ use marraztu_core::scene::{
     Model, Part, Scale, Smoothing, SurfaceMaps, Texture, UpAxis, Winding, Wrap, dvec3,
     split_positions,
 };
-use marraztu_io::{self as io, Loaded, Progress};
+use marraztu_io::{self as io, Loaded};
 use numpy::{
     PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
 };
@@ -17,7 +17,7 @@ use pyo3::prelude::*;
 
 use crate::errors::Failure;
 use crate::pictures::{self, Pixels};
-use crate::threads::work;
+use crate::threads::{work, work_while};
 use crate::values::{MaterialValue, item};
 
 /// A shape with its materials, which scenes share. It never changes.
@@ -245,9 +245,9 @@ impl Mesh {
     /// Loads an OBJ file.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf, reading: Reading) -> PyResult<Self> {
-        let Loaded { model, findings } = work(py, 0, |_| {
+        let Loaded { model, findings } = work_while(py, 0, |_, interrupt| {
             let options = reading.options(&path)?;
-            Ok(io::load(&path, &options, &Progress::new())?)
+            Ok(io::load(&path, &options, &interrupt.progress)?)
         })?;
         let findings = findings.iter().map(ToString::to_string).collect();
         Ok(Self { model: Shared::new(model), findings })

@@ -16,13 +16,13 @@ use marraztu_core::scene::{
     self as core, Command, Fill, Item, ItemId, LightId, MaterialChoice, Object, ObjectId, Observer,
     Pose, Projection, Sides, Tracked, View,
 };
-use marraztu_io::{self as io, Progress};
+use marraztu_io as io;
 use pyo3::prelude::*;
 
 use crate::errors::Failure;
 use crate::mesh::Mesh;
 use crate::shot::Shot;
-use crate::threads::{check_fork, work};
+use crate::threads::{check_fork, work, work_while};
 use crate::values::{self, LightValue, MaterialValue, Rows, item};
 
 /// The longest side of a picture in pixels.
@@ -265,7 +265,7 @@ impl Scene {
     /// Opens a scene file. Returns the scene and the findings.
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf) -> PyResult<(Self, Vec<String>)> {
-        let opened = work(py, 0, |_| Ok(io::open(&path, &Progress::new())?))?;
+        let opened = work_while(py, 0, |_, interrupt| Ok(io::open(&path, &interrupt.progress)?))?;
         let io::Opened { scene, view, settings, findings, .. } = opened;
         let ids = (1..).zip(scene.objects.ids()).map(|(id, object)| (object, id)).collect();
         let state =

@@ -7,8 +7,8 @@ use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{ItemId, ObjectId};
 use marraztu_lab::{cost, pixel};
 use marraztu_render::{
-    AxesConvention, Layer, LayerNames, LayerSet, LayerValues, Layers, NormalSpace, PictureCamera,
-    Renderer, plan_frame, without_ground,
+    AxesConvention, Cancelled, Layer, LayerNames, LayerSet, LayerValues, Layers, NormalSpace,
+    PictureCamera, Renderer, plan_frame, without_ground_while,
 };
 use numpy::{PyArray1, PyArrayMethods};
 use pyo3::prelude::*;
@@ -16,7 +16,7 @@ use pyo3::types::PyDict;
 
 use crate::errors::Failure;
 use crate::pictures;
-use crate::threads::work;
+use crate::threads::{work, work_while};
 use crate::values::{self, Rows};
 
 /// Scene, view, settings and size: everything that a picture depends on.
@@ -69,17 +69,27 @@ impl Shot {
         Self { shot, ids }
     }
 
-    fn draw(&self, renderer: &mut Renderer, transparent: bool) -> Picture {
+    fn draw(
+        &self,
+        renderer: &mut Renderer,
+        transparent: bool,
+        wanted: &(dyn Fn() -> bool + Sync),
+    ) -> Result<Picture, Cancelled> {
         if transparent {
-            return without_ground(renderer, &self.shot);
+            return without_ground_while(renderer, &self.shot, wanted);
         }
-        renderer.render(&plan_frame(&self.shot));
-        renderer.take_picture()
+        renderer.render_while(&plan_frame(&self.shot), wanted)?;
+        Ok(renderer.take_picture())
     }
 
     /// Computes layers. Objects have the ids of their nodes.
-    fn layers(&self, renderer: &mut Renderer, set: LayerSet, normals: NormalSpace) -> Layers {
-        let mut layers = renderer.layers(&self.shot, set, normals);
+    fn layers(
+        &self,
+        renderer: &mut Renderer,
+        (set, normals): (LayerSet, NormalSpace),
+        wanted: &(dyn Fn() -> bool + Sync),
+    ) -> Result<Layers, Cancelled> {
+        let mut layers = renderer.layers_while(&self.shot, set, normals, wanted)?;
         let own = layers.names.objects.iter().map(|named| self.ids.get(&named.object).copied());
         let ids: Vec<i32> =
             [Some(0)].into_iter().chain(own).map(Option::unwrap_or_default).collect();
@@ -88,7 +98,7 @@ impl Shot {
                 *value = usize::try_from(*value).map_or(0, |number| ids[number]);
             }
         }
-        layers
+        Ok(layers)
     }
 }
 
@@ -171,10 +181,13 @@ impl Shot {
         let reason = format!("there is not enough memory for {width} x {height} pixels");
         set.check_memory(self.shot.size).map_err(|_full| Failure::Memory(reason))?;
         pictures::load_numpy(py)?;
-        let (picture, layers) = work(py, threads, |renderer| {
-            let picture = with_color.then(|| self.draw(renderer, transparent));
-            let layers = (!set.is_empty()).then(|| self.layers(renderer, set, normals));
-            Ok((picture, layers))
+        let (picture, layers) = work_while(py, threads, |renderer, interrupt| {
+            let wanted = || interrupt.is_wanted();
+            let interrupted = |_cancelled| Failure::Interrupted;
+            let picture = with_color.then(|| self.draw(renderer, transparent, &wanted));
+            let picture = picture.transpose().map_err(interrupted)?;
+            let layers = (!set.is_empty()).then(|| self.layers(renderer, (set, normals), &wanted));
+            Ok((picture, layers.transpose().map_err(interrupted)?))
         })?;
         let arrays = PyDict::new(py);
         if let Some(picture) = picture {

@@ -8,8 +8,12 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Mutex, PoisonError, TryLockError};
+use std::time::{Duration, Instant};
 
+use marraztu_core::base::threads::{self, Caller};
+use marraztu_io::Progress;
 use marraztu_render::Renderer;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
@@ -21,6 +25,9 @@ const MOST_THREADS: usize = 1024;
 
 /// The most painters that wait for the next call.
 const MOST_IDLE: usize = 64;
+
+/// The time between two looks for signals.
+const PERIOD: Duration = Duration::from_millis(50);
 
 /// A renderer with its threads.
 struct Painter {
@@ -43,15 +50,79 @@ impl Threads {
         }
     }
 
-    fn run<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+    /// Runs work, and returns to Python from time to time to look for Ctrl+C.
+    fn run<T: Send>(&self, interrupt: &Interrupt, work: impl FnOnce() -> T + Send) -> T {
         match self {
-            Self::Pool(pool) => pool.install(work),
+            Self::Pool(pool) => pool
+                .in_place_scope(|scope| {
+                    let (sender, receiver) = channel();
+                    // The receiver waits for the result.
+                    scope.spawn(move |_| _ = sender.send(work()));
+                    loop {
+                        match receiver.recv_timeout(PERIOD) {
+                            Ok(result) => return Some(result),
+                            Err(RecvTimeoutError::Timeout) => interrupt.look(),
+                            Err(RecvTimeoutError::Disconnected) => return None,
+                        }
+                    }
+                })
+                .expect("the scope passes on a panic"),
             Self::Caller => OWN_POOL.with(|own| {
                 // The calling thread is the pool's only thread, so this does not change threads.
                 let own = own.as_ref().expect("a thread joins one pool, and only here");
                 own.install(work)
             }),
         }
+    }
+}
+
+/// Tells work to end after Ctrl+C. Only the main thread of Python hears of signals.
+pub(crate) struct Interrupt {
+    is_main: bool,
+    /// Whether the thread that works has to look by itself.
+    is_alone: bool,
+    /// Cancelled by a signal.
+    pub(crate) progress: Progress,
+    error: Mutex<Option<PyErr>>,
+    /// The time of the next look.
+    next: Mutex<Instant>,
+}
+
+impl Interrupt {
+    fn new(py: Python<'_>, threads: &Threads) -> PyResult<Self> {
+        let threading = py.import("threading")?;
+        let main = threading.call_method0("main_thread")?.getattr("ident")?;
+        Ok(Self {
+            is_main: threading.call_method0("get_ident")?.eq(main)?,
+            is_alone: matches!(threads, Threads::Caller),
+            progress: Progress::new(),
+            error: Mutex::new(None),
+            next: Mutex::new(Instant::now() + PERIOD),
+        })
+    }
+
+    /// Runs the handlers of signals. The error of a handler ends the work.
+    fn look(&self) {
+        if !self.is_main {
+            return;
+        }
+        if let Err(error) = Python::attach(|py| py.check_signals()) {
+            self.error.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+            self.progress.cancel();
+        }
+    }
+
+    /// Returns whether the work goes on. To be asked often, as between two tiles.
+    pub(crate) fn is_wanted(&self) -> bool {
+        if self.is_main && self.is_alone {
+            let mut next = self.next.lock().unwrap_or_else(PoisonError::into_inner);
+            if Instant::now() >= *next {
+                *next = Instant::now() + PERIOD;
+                drop(next);
+                self.look();
+            }
+        }
+        !self.progress.is_cancelled()
     }
 }
 
@@ -76,20 +147,37 @@ pub(crate) fn check_fork() -> Result<(), Failure> {
     if IS_LOST.load(Ordering::Acquire) { Err(Failure::Forked) } else { Ok(()) }
 }
 
-/// Runs work in a pool of this number of threads (0: one per core), without Python's lock.
+/// Runs short work in a pool of this number of threads (0: one per core), without Python's lock.
 pub(crate) fn work<T: Send>(
     py: Python<'_>,
     threads: usize,
     work: impl FnOnce(&mut Renderer) -> Result<T, Failure> + Send,
 ) -> PyResult<T> {
+    work_while(py, threads, |renderer, _| work(renderer))
+}
+
+/// Works like [`work`]. The work ends early if it is interrupted, and its result does not count.
+pub(crate) fn work_while<T: Send>(
+    py: Python<'_>,
+    threads: usize,
+    work: impl FnOnce(&mut Renderer, &Interrupt) -> Result<T, Failure> + Send,
+) -> PyResult<T> {
     check_fork()?;
     if threads > MOST_THREADS {
         return Err(Failure::value(format!("threads is at most {MOST_THREADS}")).into());
     }
-    Ok(py.detach(|| {
-        let mut painter = borrow(threads)?;
+    let mut painter = py.detach(|| borrow(threads));
+    let interrupt = match Interrupt::new(py, &painter.threads) {
+        Ok(interrupt) => interrupt,
+        Err(error) => {
+            give_back(Some(painter));
+            return Err(error);
+        }
+    };
+    let done = py.detach(|| {
         let Painter { threads, renderer } = &mut painter;
-        let done = catch_unwind(AssertUnwindSafe(|| threads.run(|| work(renderer))));
+        let work = || threads.run(&interrupt, || work(renderer, &interrupt));
+        let done = catch_unwind(AssertUnwindSafe(work));
         // After a panic, the renderer may be in any state.
         give_back(done.is_ok().then_some(painter));
         done.unwrap_or_else(|panic| {
@@ -97,7 +185,11 @@ pub(crate) fn work<T: Send>(
             let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
             Err(Failure::Panic(text.unwrap_or_else(|| "a panic without a message".to_owned())))
         })
-    })?)
+    });
+    match interrupt.error.into_inner().unwrap_or_else(PoisonError::into_inner) {
+        Some(error) => Err(error),
+        None => Ok(done?),
+    }
 }
 
 /// Returns the number of threads that the process may run at the same time.
@@ -106,22 +198,23 @@ pub(crate) fn cores() -> usize {
     std::thread::available_parallelism().map_or(1, usize::from)
 }
 
-fn borrow(threads: usize) -> Result<Painter, Failure> {
+fn borrow(threads: usize) -> Painter {
     let threads = if threads == 0 { cores() } else { threads };
     let mut painters = PAINTERS.lock().unwrap_or_else(PoisonError::into_inner);
     let has = |painter: &Painter| painter.threads.count() == threads;
     if let Some(at) = painters.idle.iter().rposition(has) {
         painters.busy += 1;
-        return Ok(painters.idle.remove(at));
+        return painters.idle.remove(at);
     }
     let threads = if threads == 1 {
         Threads::Caller
     } else {
-        let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-        Threads::Pool(pool.map_err(|error| Failure::Panic(error.to_string()))?)
+        // A system that limits threads may provide fewer, or none.
+        let pool = threads::pool(threads, Caller::Waits, "marraztu");
+        pool.map_or(Threads::Caller, Threads::Pool)
     };
     painters.busy += 1;
-    Ok(Painter { threads, renderer: Renderer::default() })
+    Painter { threads, renderer: Renderer::default() }
 }
 
 fn give_back(painter: Option<Painter>) {

@@ -38,6 +38,21 @@ def test_findings_are_warnings_at_the_callers_line(tmp_path):
         assert mz.Mesh.load(path).findings == []
 
 
+def test_a_load_warns_once_of_all_findings_and_not_at_all_if_they_are_ignored(tmp_path):
+    path = tmp_path / "a.obj"
+    odd = ["mtllib none.mtl", "usemtl red", "f 1 2 7", "f 1 x 3", "vt 0"]
+    for count in (3, 5):
+        path.write_text(TRIANGLE + "\n".join(odd[:count]) + "\n")
+        with pytest.warns(mz.FindingWarning) as caught:
+            mesh = mz.Mesh.load(path)
+        assert len(mesh.findings) > 1 and len(caught) == 1
+        assert all(finding in str(caught[0].message) for finding in mesh.findings[:5])
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        warnings.simplefilter("ignore", mz.FindingWarning)
+        assert mz.Mesh.load(path).findings and not caught
+
+
 def test_options_of_files(tmp_path):
     path = tmp_path / "a.obj"
     path.write_text(TRIANGLE)

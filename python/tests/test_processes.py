@@ -164,3 +164,23 @@ def test_layers_without_memory_raise_memory_error():
         """
     )
     assert output == "there is not enough memory for 16384 x 16384 pixels\n(64, 64)\n"
+
+
+def test_ctrl_c_ends_a_picture_that_would_take_minutes():
+    output = run(
+        """
+        import _thread
+        mesh = mz.Mesh([[-9, -9, 0], [9, -9, 0], [9, 9, 0], [-9, 9, 0]], [[0, 1, 2, 3]])
+        scene = mz.Scene([mesh] * 200)
+        for threads in (1, 2):
+            for more in ({}, {"layers": ("color", "depth")}, {"transparent": True}):
+                threading.Timer(0.5, _thread.interrupt_main).start()
+                try:
+                    scene.render(9000, 9000, samples=256, threads=threads, **more)
+                except KeyboardInterrupt:
+                    print("interrupted")
+        scene.render(20, 20)
+        """,
+        limit=100,
+    )
+    assert output == "interrupted\n" * 6

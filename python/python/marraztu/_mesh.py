@@ -19,14 +19,24 @@ CREASE = math.radians(60)
 """Edges between faces are smooth below this angle, unless the mesh has normals."""
 
 
+MOST_SHOWN = 5
+"""The most findings in the text of a warning."""
+
+
 class FindingWarning(UserWarning):
-    """Something in a file was repaired, left out or odd."""
+    """Something in a file was repaired, left out or odd.
+
+    `warnings.simplefilter("ignore", marraztu.FindingWarning)` silences these warnings.
+    """
 
 
 def warn_of(findings: list[str]) -> None:
-    """Warns of each finding, at the caller of the public function."""
-    for finding in findings:
-        warnings.warn(finding, FindingWarning, stacklevel=3)
+    """Warns once of all findings, at the caller of the public function."""
+    lines = findings[:MOST_SHOWN]
+    if len(findings) > MOST_SHOWN:
+        lines.append(f"and {len(findings) - MOST_SHOWN} more: see findings")
+    if lines:
+        warnings.warn("\n".join(lines), FindingWarning, stacklevel=3)
 
 
 class Mesh:
@@ -98,8 +108,8 @@ class Mesh:
 
         `up` is the axis of the file that points up: x, y, z, -x, -y or -z; by default the axis
         stated in its comments, z for STL, or y. `crease` is in radians, and used if the file has
-        neither normals nor smoothing groups; by default `CREASE`, and 0 for STL. Repairs are
-        warnings (`FindingWarning`) and in `findings`.
+        neither normals nor smoothing groups; by default `CREASE`, and 0 for STL. Repairs are in
+        `findings`, and in a warning (`FindingWarning`).
 
         Raises `LoadError` with `file`, `line` and `reason`.
         """
