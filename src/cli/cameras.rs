@@ -2,16 +2,21 @@
 //!
 //! The file has the fields of nerfstudio's `transforms.json`, so `--views` reads it again. Further
 //! fields have the matrices with the axes of OpenGL and of OpenCV. A run replaces the entries of
-//! its pictures and keeps the others.
+//! its pictures and keeps the others, except in data sets. Entries are never all in memory.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry::Vacant;
+use std::fs::File;
+use std::io::BufReader;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use marraztu_core::accuracy::Shot;
 use marraztu_core::scene::Projection;
-use marraztu_io as io;
+use marraztu_io::{NewFile, SaveError, Spool};
 use marraztu_render::{AxesConvention, LayerNames, PictureCamera};
-use serde::{Deserialize, Serialize};
+use serde::Deserializer;
+use serde::de::{DeserializeSeed, Error as _, IgnoredAny, MapAccess, SeqAccess, Visitor};
 use serde_json::{Map, Value, json};
 
 use super::failure::Failure;
@@ -31,19 +36,6 @@ pub(crate) struct CameraFrame {
     entry: Map<String, Value>,
     /// The meaning of the ids, if the picture has any.
     ids: Option<Value>,
-}
-
-/// The content of the file.
-#[derive(Debug, Serialize, Deserialize)]
-struct CameraFile {
-    /// The program's version.
-    marraztu: String,
-    /// The position of the first pixel's centre.
-    pixel_center: f64,
-    /// The meaning of ids, by scene.
-    #[serde(default)]
-    ids: BTreeMap<String, Value>,
-    frames: Vec<Map<String, Value>>,
 }
 
 /// Returns the rows of a matrix.
@@ -142,66 +134,200 @@ pub(super) fn ids(names: &LayerNames) -> Value {
     })
 }
 
-/// Writes the cameras of pictures to files of this name, in the folders of the pictures. Fails if a
-/// file cannot be written, or a file of another program has the name.
-pub(crate) fn write_cameras(name: &str, frames: Vec<CameraFrame>) -> Result<(), Failure> {
-    let mut folders: BTreeMap<PathBuf, Vec<CameraFrame>> = BTreeMap::new();
-    for frame in frames {
-        folders.entry(frame.folder.clone()).or_default().push(frame);
+/// The cameras of a folder: the places of entries by the path of their picture, and of the meaning
+/// of ids by scene.
+#[derive(Debug, Default)]
+struct FolderCameras {
+    entries: BTreeMap<String, Range<u64>>,
+    ids: BTreeMap<String, Range<u64>>,
+}
+
+/// The cameras of all pictures of a run. They wait in a file, because there may be millions.
+#[derive(Debug)]
+pub(crate) struct Cameras {
+    name: String,
+    earlier: Earlier,
+    folders: BTreeMap<PathBuf, FolderCameras>,
+    spool: Option<Spool>,
+}
+
+/// What happens to the entries of earlier runs for other pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Earlier {
+    Kept,
+    Dropped,
+}
+
+impl Cameras {
+    /// Begins to collect cameras for files of this name, in the folders of the pictures.
+    pub(crate) fn new(name: String, earlier: Earlier) -> Self {
+        Self { name, earlier, folders: BTreeMap::new(), spool: None }
     }
-    for (folder, frames) in folders {
-        let path = folder.join(name);
-        let (mut ids, mut all) = match read(&path)? {
-            Some(file) => (file.ids, entries(file.frames)),
-            None => (BTreeMap::new(), BTreeMap::new()),
-        };
-        for CameraFrame { scene, entry, ids: own, .. } in frames {
-            ids.extend(own.map(|own| (scene, own)));
-            all.extend(entries(vec![entry]));
+
+    /// Adds the camera of a picture. Fails if it cannot be written.
+    pub(crate) fn add(&mut self, frame: CameraFrame) -> Result<(), SaveError> {
+        let CameraFrame { folder, scene, entry, ids } = frame;
+        let spool = spool_in(&mut self.spool, &folder)?;
+        let cameras = self.folders.entry(folder).or_default();
+        let path = CameraFrame::file_path(&entry).to_owned();
+        cameras.entries.insert(path, pushed(spool, &Value::Object(entry))?);
+        if let (Some(ids), Vacant(vacant)) = (ids, cameras.ids.entry(scene)) {
+            vacant.insert(pushed(spool, &ids)?);
         }
-        io::save_encoded(&path, &written(&ids, all.into_values()))?;
+        Ok(())
     }
-    Ok(())
+
+    /// Writes the files. Fails if one cannot be written, or a file of another program has its name.
+    pub(crate) fn write(mut self) -> Result<(), Failure> {
+        for (folder, mut cameras) in std::mem::take(&mut self.folders) {
+            let path = folder.join(&self.name);
+            let spool = spool_in(&mut self.spool, &folder)?;
+            if self.earlier == Earlier::Kept {
+                cameras.add_earlier(&path, spool)?;
+            }
+            let mut file = NewFile::begin(&path)?;
+            let program = json!(env!("CARGO_PKG_VERSION"));
+            let head = format!("{{\"marraztu\": {program}, \"pixel_center\": 0.5,\n\"ids\": {{\n");
+            file.push(head.as_bytes())?;
+            for (i, (scene, place)) in cameras.ids.iter().enumerate() {
+                let begin = if i == 0 { "" } else { ",\n" };
+                file.push(format!("{begin}{}: ", json!(scene)).as_bytes())?;
+                file.push(&spool.get(place)?)?;
+            }
+            file.push(b"\n},\n\"frames\": [\n")?;
+            for (i, place) in cameras.entries.values().enumerate() {
+                let comma: &[u8] = if i == 0 { b"" } else { b",\n" };
+                file.push(comma)?;
+                file.push(&spool.get(place)?)?;
+            }
+            file.push(b"\n]}\n")?;
+            file.finish()?;
+        }
+        Ok(())
+    }
+}
+
+impl FolderCameras {
+    /// Adds the entries of an earlier run, if there is one, for other pictures and scenes.
+    fn add_earlier(&mut self, path: &Path, spool: &mut Spool) -> Result<(), Failure> {
+        let mut failed = None;
+        let mut add = |piece: Piece| {
+            let (places, name, value) = match piece {
+                Piece::Ids(scene, ids) => (&mut self.ids, scene, ids),
+                Piece::Entry(entry) => {
+                    let name = CameraFrame::file_path(&entry).to_owned();
+                    (&mut self.entries, name, Value::Object(entry))
+                }
+            };
+            let Vacant(vacant) = places.entry(name) else { return };
+            match pushed(spool, &value) {
+                Ok(place) => _ = vacant.insert(place),
+                Err(error) => failed = Some(error),
+            }
+        };
+        read(path, &mut add)?;
+        failed.map_or(Ok(()), |error| Err(error.into()))
+    }
+}
+
+/// Returns the file of waiting records, which is created in the folder of the first one.
+fn spool_in<'a>(spool: &'a mut Option<Spool>, folder: &Path) -> Result<&'a mut Spool, SaveError> {
+    let begun = match spool.take() {
+        Some(spool) => spool,
+        None => Spool::begin(folder)?,
+    };
+    Ok(spool.insert(begun))
+}
+
+fn pushed(spool: &mut Spool, value: &Value) -> Result<Range<u64>, SaveError> {
+    spool.push(value.to_string().as_bytes())
 }
 
 /// Checks, before anything is drawn, that the file at `path` is missing or one of an earlier run.
 /// Fails if it has other content.
 pub(crate) fn check_cameras(path: &Path) -> Result<(), Failure> {
-    read(path).map(drop)
+    read(path, &mut |_piece| {})
 }
 
-fn entries(frames: Vec<Map<String, Value>>) -> BTreeMap<String, Map<String, Value>> {
-    let named = |entry: Map<String, Value>| (CameraFrame::file_path(&entry).to_owned(), entry);
-    frames.into_iter().map(named).collect()
+/// A part of the file.
+enum Piece {
+    /// The meaning of ids in a scene.
+    Ids(String, Value),
+    Entry(Map<String, Value>),
 }
 
-/// Reads a file of an earlier run, if there is one.
-fn read(path: &Path) -> Result<Option<CameraFile>, Failure> {
-    let content = match std::fs::read(path) {
-        Ok(content) => content,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+/// A function that takes the parts of a file.
+type Take<'a> = &'a mut dyn FnMut(Piece);
+
+/// Reads a file of an earlier run, if there is one, entry by entry.
+fn read(path: &Path, take: Take<'_>) -> Result<(), Failure> {
+    let file = match File::open(path) {
+        Ok(file) => BufReader::new(file),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(()),
         Err(error) => return Err(Failure::Write(path.to_owned(), error)),
     };
-    serde_json::from_slice(&content).map(Some).map_err(|_other_content| {
+    let mut json = serde_json::Deserializer::from_reader(file);
+    let whole = json.deserialize_map(FileReader(take)).and_then(|()| json.end());
+    whole.map_err(|_other_content| {
         let reason = "a file with this name exists and has other content";
         Failure::Write(path.to_owned(), std::io::Error::other(reason))
     })
 }
 
-/// Formats the file, with a line for each entry.
-fn written(
-    ids: &BTreeMap<String, Value>,
-    frames: impl Iterator<Item = Map<String, Value>>,
-) -> Vec<u8> {
-    let lines: Vec<String> = frames.map(|entry| Value::Object(entry).to_string()).collect();
-    let ids: Vec<String> =
-        ids.iter().map(|(scene, ids)| format!("{}: {ids}", json!(scene))).collect();
-    format!(
-        "{{\"marraztu\": {}, \"pixel_center\": 0.5,\n\"ids\": {{\n{}\n}},\n\
-         \"frames\": [\n{}\n]}}\n",
-        json!(env!("CARGO_PKG_VERSION")),
-        ids.join(",\n"),
-        lines.join(",\n"),
-    )
-    .into_bytes()
+/// Reads the fields of the file.
+struct FileReader<'a>(Take<'a>);
+
+impl<'de> Visitor<'de> for FileReader<'_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("cameras")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
+        let mut missing = ["marraztu", "pixel_center", "frames"].map(Some);
+        while let Some(name) = map.next_key::<String>()? {
+            for field in &mut missing {
+                field.take_if(|field| **field == *name);
+            }
+            match &*name {
+                "marraztu" => drop(map.next_value::<String>()?),
+                "pixel_center" => _ = map.next_value::<f64>()?,
+                "ids" => {
+                    let ids: BTreeMap<String, Value> = map.next_value()?;
+                    ids.into_iter().for_each(|(scene, ids)| (self.0)(Piece::Ids(scene, ids)));
+                }
+                "frames" => map.next_value_seed(EntryReader(&mut *self.0))?,
+                _ => _ = map.next_value::<IgnoredAny>()?,
+            }
+        }
+        let missing = missing.into_iter().flatten().next();
+        missing.map_or(Ok(()), |field| Err(A::Error::missing_field(field)))
+    }
+}
+
+/// Reads the list of entries.
+struct EntryReader<'a>(Take<'a>);
+
+impl<'de> DeserializeSeed<'de> for EntryReader<'_> {
+    type Value = ();
+
+    fn deserialize<D: Deserializer<'de>>(self, list: D) -> Result<(), D::Error> {
+        list.deserialize_seq(self)
+    }
+}
+
+impl<'de> Visitor<'de> for EntryReader<'_> {
+    type Value = ();
+
+    fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("a list of cameras")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<(), A::Error> {
+        while let Some(entry) = list.next_element()? {
+            (self.0)(Piece::Entry(entry));
+        }
+        Ok(())
+    }
 }

@@ -4,7 +4,7 @@
 
 use std::collections::btree_map::Entry::{Occupied, Vacant};
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt::Write as _;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
@@ -12,7 +12,7 @@ use marraztu::plots::{PageCell, sheet_page};
 use marraztu_io::Sources;
 
 use super::batch::Status;
-use super::batch::list::{Entry, expanded, read_list, read_text};
+use super::batch::list::{expanded, read_list, read_text};
 use super::batch::report::{Counts, Line, Summary, begin, check_report, line};
 use super::failure::{Failure, usage};
 use super::page::{check_page, relative_url, write_page};
@@ -49,8 +49,17 @@ pub(crate) struct Merge {
     talk: Talk,
 }
 
-/// The most pictures of a list. A larger number is a mistake in the file, and would fill memory.
-const MOST_JOBS: usize = 100_000_000;
+/// The most pictures of a list for each picture in a report. A larger number is a mistake in the
+/// file: a batch has at most about a thousand parts, and one of them is in a report.
+const MOST_JOBS: usize = 1000;
+
+/// A part of the list.
+enum Entry<'a> {
+    /// A picture with its number.
+    Reported(usize, &'a Line),
+    /// The numbers of pictures that are in no report.
+    Absent(Range<usize>),
+}
 
 /// The lines of all reports.
 #[derive(Debug, Default)]
@@ -78,6 +87,7 @@ pub(super) fn merge(arguments: &Merge) -> Result<(), Failure> {
         let text = read_text(path)?;
         merged.add(path, &text).map_err(Failure::Usage)?;
     }
+    merged.check().map_err(Failure::Usage)?;
     let expected = match &arguments.expect {
         Some(list) => read_list(list, &|_| true)?.into_iter().map(|entry| entry.file).collect(),
         None => BTreeSet::new(),
@@ -94,17 +104,20 @@ pub(super) fn merge(arguments: &Merge) -> Result<(), Failure> {
         let title = format!("{} of {} pictures", counts.done, counts.jobs);
         write_page(sheet, &sheet_page(&title, &merged.cells(sheet, &counts, &expected)))?;
     }
-    let missing = merged.missing(&counts, &expected);
-    print(&missing)?;
+    let mut is_whole = true;
+    merged.each_missing(&counts, &expected, &mut |line| {
+        is_whole = false;
+        print(line)
+    })?;
     note(&format_args!("{} of {} pictures are there", counts.done, counts.jobs));
-    if missing.is_empty() { Ok(()) } else { Err(Failure::Told) }
+    if is_whole { Ok(()) } else { Err(Failure::Told) }
 }
 
 /// Returns the reports, without the file that the joined report is written to.
 fn reports(arguments: &Merge) -> Result<Vec<PathBuf>, Failure> {
     let out = arguments.out.canonicalize().ok();
     let mut reports = Vec::new();
-    for Entry { file, .. } in expanded(&arguments.reports)? {
+    for file in expanded(&arguments.reports)?.into_iter().map(|entry| entry.file) {
         if out.is_some() && file.canonicalize().ok() == out {
             note(&format_args!("{} is the output, so it is not read", file.display()));
         } else {
@@ -133,9 +146,6 @@ impl Merged {
                          earlier runs",
                         place(i)
                     ));
-                }
-                if summary.jobs > MOST_JOBS {
-                    return Err(format!("{}: more than {MOST_JOBS} pictures", place(i)));
                 }
                 jobs = Some(summary.jobs);
                 continue;
@@ -184,21 +194,51 @@ impl Merged {
         counts
     }
 
-    /// Lists missing pictures, and expected models that are in no report.
-    fn missing(&self, counts: &Counts, expected: &BTreeSet<PathBuf>) -> String {
-        let mut text = String::new();
-        for index in 0..counts.jobs {
-            // Writing to a string cannot fail.
-            let _ = match self.lines.get(&index) {
-                Some((line, ..)) if line.status == Status::Done => Ok(()),
-                Some((line, ..)) => writeln!(text, "{index}\t{line}"),
-                None => writeln!(text, "{index}\t\t\tabsent"),
-            };
+    /// Checks that the number of pictures that the reports state fits the pictures in them.
+    fn check(&self) -> Result<(), String> {
+        let (jobs, lines) = (self.jobs.unwrap_or(0), self.lines.len());
+        if jobs > MOST_JOBS.saturating_mul(lines.max(1)) {
+            return Err(format!(
+                "the reports state {jobs} pictures, but have {lines}: a summary is damaged, or most \
+                 reports are missing"
+            ));
         }
-        for file in self.absent(expected) {
-            let _ = writeln!(text, "\t{}\t\tabsent", file.display());
+        Ok(())
+    }
+
+    /// Iterates over the pictures of the list: the ones in reports, and runs of absent ones.
+    fn entries(&self, jobs: usize) -> impl Iterator<Item = Entry<'_>> {
+        let ends = self.lines.iter().map(|(index, (line, ..))| (*index, Some(line)));
+        let ends = ends.chain([(jobs, None)]);
+        let spans = ends.scan(0, |next, (index, line)| {
+            let absent = *next..index;
+            *next = index + 1;
+            Some((absent, line.map(|line| Entry::Reported(index, line))))
+        });
+        spans.flat_map(|(absent, reported)| {
+            let absent = (!absent.is_empty()).then_some(Entry::Absent(absent));
+            absent.into_iter().chain(reported)
+        })
+    }
+
+    /// Passes on a line for each missing picture, and for each expected model that is in no report.
+    fn each_missing(
+        &self,
+        counts: &Counts,
+        expected: &BTreeSet<PathBuf>,
+        take: &mut dyn FnMut(&str) -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
+        for entry in self.entries(counts.jobs) {
+            match entry {
+                Entry::Reported(_, line) if line.status == Status::Done => {}
+                Entry::Reported(index, line) => take(&format!("{index}\t{line}\n"))?,
+                Entry::Absent(mut absent) => {
+                    absent.try_for_each(|index| take(&format!("{index}\t\t\tabsent\n")))?;
+                }
+            }
         }
-        text
+        self.absent(expected)
+            .try_for_each(|file| take(&format!("\t{}\t\tabsent\n", file.display())))
     }
 
     /// Returns the expected models that are in no report.
@@ -210,10 +250,16 @@ impl Merged {
 
     /// Returns the pictures of a page at `page`.
     fn cells(&self, page: &Path, counts: &Counts, expected: &BTreeSet<PathBuf>) -> Vec<PageCell> {
-        let cell = |index: usize| {
-            let Some((line, ..)) = self.lines.get(&index) else {
-                let label = format!("picture {index}");
-                return PageCell { label, picture: Err("absent".to_owned()) };
+        let cell = |entry: Entry<'_>| {
+            let line = match entry {
+                Entry::Reported(_, line) => line,
+                Entry::Absent(absent) => {
+                    let label = match absent.len() {
+                        1 => format!("picture {}", absent.start),
+                        _ => format!("pictures {} to {}", absent.start, absent.end - 1),
+                    };
+                    return PageCell { label, picture: Err("absent".to_owned()) };
+                }
             };
             let picture = match (line.status, &line.error) {
                 (Status::Done, _) => Ok(relative_url(page, Path::new(line.shown_file()))),
@@ -226,7 +272,7 @@ impl Merged {
             label: file.display().to_string(),
             picture: Err("absent".to_owned()),
         });
-        (0..counts.jobs).map(cell).chain(absent).collect()
+        self.entries(counts.jobs).map(cell).chain(absent).collect()
     }
 }
 
@@ -265,7 +311,13 @@ mod tests {
         assert_eq!((counts.jobs, counts.done, counts.invalid, counts.timeout), (4, 2, 1, 0));
         let expected = ["0.obj", "9.obj"].map(PathBuf::from).into();
         let missing = "1\t1.obj\t0\tinvalid\n3\t\t\tabsent\n\t9.obj\t\tabsent\n";
-        assert_eq!(merged.missing(&counts, &expected), missing);
+        let mut told = String::new();
+        let mut tell = |line: &str| {
+            told += line;
+            Ok(())
+        };
+        merged.each_missing(&counts, &expected, &mut tell).unwrap();
+        assert_eq!(told, missing);
     }
 
     #[test]
@@ -286,17 +338,51 @@ mod tests {
 
     #[test]
     fn reports_that_are_cut_off_or_impossible_are_rejected() {
-        let (done, huge) = (line_of(1, "done"), summary_of(usize::MAX));
+        let done = line_of(1, "done");
         for (report, reason) in [
             (vec![], "r: the report is cut off"),
             (vec![done.clone()], "r: the report is cut off"),
             (vec![done.clone(), summary_of(2)[..20].to_owned()], "r:2: this is not a line"),
-            (vec![done.clone(), huge], "r:2: more than 100000000 pictures"),
             (vec![done.clone(), summary_of(1)], "r: there is no picture 1 of 1"),
             (vec![summary_of(2), done], "r:2: a report ends with its summary"),
         ] {
             let error = merged(&[&report]).unwrap_err();
             assert!(error.starts_with(reason), "{error}");
         }
+    }
+
+    #[test]
+    fn a_summary_states_no_more_pictures_than_a_thousand_parts_of_those_in_the_reports() {
+        let (zero, done) = (line_of(0, "done"), line_of(1, "done"));
+        for (lines, jobs, is_right) in [
+            (&[][..], 1000, true),
+            (&[], 1001, false),
+            (&[done.clone()], 1000, true),
+            (&[done.clone()], 2_000_000, false),
+            (&[done.clone()], usize::MAX, false),
+            (&[zero, done], 2000, true),
+        ] {
+            let report = [lines, &[summary_of(jobs)]].concat();
+            let checked = merged(&[&report]).unwrap().check();
+            assert_eq!(checked.is_ok(), is_right, "{jobs}");
+            let stated = format!("the reports state {jobs} pictures, but have {}", lines.len());
+            assert!(checked.err().is_none_or(|error| error.starts_with(&stated)));
+        }
+    }
+
+    #[test]
+    fn absent_pictures_are_one_entry_of_a_page_however_many_they_are() {
+        let report = [line_of(1, "done"), line_of(500, "done"), summary_of(900)];
+        let merged = merged(&[&report]).unwrap();
+        let cells = merged.cells(Path::new("page.html"), &merged.counts(), &BTreeSet::new());
+        let labels: Vec<&str> = cells.iter().map(|cell| &*cell.label).collect();
+        let expected = [
+            "picture 0",
+            "1.obj, view 0",
+            "pictures 2 to 499",
+            "500.obj, view 0",
+            "pictures 501 to 899",
+        ];
+        assert_eq!(labels, expected);
     }
 }

@@ -22,8 +22,7 @@ use super::arguments::{
     Exposure, PictureArguments, Render, SceneArguments, Seeing, ShadowSlots, Slots, Surfaces,
 };
 use super::bar::Bar;
-use super::cameras::{CAMERAS, CameraFrame, check_cameras, write_cameras};
-use super::draw_along;
+use super::cameras::{CAMERAS, CameraFrame, Cameras, Earlier, check_cameras};
 use super::failure::{Failure, usage};
 use super::layers::LayerContent;
 use super::stage::{Stage, Watch};
@@ -177,7 +176,9 @@ fn written(
         let shot = stage.shot(picture.size);
         let files = (target.folder(), &files[..]);
         let frame = CameraFrame::new(&shot, files, scene, (options, names.as_ref()));
-        write_cameras(CAMERAS, vec![frame])?;
+        let mut cameras = Cameras::new(CAMERAS.to_owned(), Earlier::Kept);
+        cameras.add(frame)?;
+        cameras.write()?;
     }
     if let (None, [first, ..]) = (&arguments.out, &files[..]) {
         note(&format_args!("the picture is in {}", first.path.display()));
@@ -212,11 +213,8 @@ fn tell_unseen(renderer: &mut Renderer, shot: &Shot) {
 
 /// Loads the files, applies the options, and reports findings.
 pub(super) fn stage(picture: &PictureArguments) -> Result<Stage, Failure> {
-    let PictureArguments { files, scene, accuracy, talk, threads, .. } = picture;
+    let PictureArguments { files, scene, accuracy, talk, .. } = picture;
     talk.apply();
-    if threads.is_some() {
-        draw_along(*threads);
-    }
     let mut stage = staged(files, scene)?;
     stage.settings = accuracy.of_file(&stage.settings);
     Ok(stage)

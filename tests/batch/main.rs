@@ -5,6 +5,7 @@
 mod datasets;
 mod layers;
 mod pictures;
+mod streams;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

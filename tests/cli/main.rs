@@ -2,6 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
+mod limits;
 mod models;
 
 use std::path::Path;
@@ -417,4 +418,35 @@ fn a_scene_without_its_files_is_drawn_described_and_exported_with_a_finding() {
     }
     let obj = std::fs::read_to_string(folder.path().join("a.obj")).unwrap();
     assert!(obj.contains("v 5 5 5") && !obj.contains("ship"), "{obj}");
+}
+
+#[test]
+fn an_address_is_refused_in_one_sentence_and_creates_no_folder() {
+    let folder = folder();
+    std::fs::write(folder.path().join("a.obj"), SQUARE).unwrap();
+    let before = std::fs::read_dir(folder.path()).unwrap().count();
+    for arguments in [
+        &["render", "a.obj", "--out", "s3://pictures/a.png"][..],
+        &["render", "a.obj", "--layers", "depth", "--out", "gs://pictures/{layer}.png"],
+        &["batch", "a.obj", "--out", "s3://pictures/{stem}.png"],
+        &["batch", "a.obj", "--out", "S3://pictures/{stem}.png", "--dry-run"],
+        &["batch", "a.obj", "--dataset", "coco", "--out", "https://pictures/set"],
+        &["batch", "a.obj", "--report", "s3://pictures/r.jsonl"],
+        &["batch", "a.obj", "--times", "abfs+x://pictures/t.jsonl"],
+        &["batch", "a.obj", "--sheet", "1x1", "--sheets", "s3://sheets"],
+        &["turntable", "a.obj", "--out", "s3://pictures/a.gif"],
+        &["turntable", "a.obj", "--out", "s3://pictures/a"],
+        &["views", "a.obj", "--out", "s3://pictures/a.png"],
+        &["thumbnail", "a.obj", "s3://pictures/a.png"],
+        &["export", "a.obj", "--out", "s3://models/a.glb"],
+        &["verify", "--out", "s3://pictures"],
+        &["lab", "a.obj", "--out", "s3://results"],
+    ] {
+        let output = run(folder.path(), arguments);
+        let err = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success(), "{arguments:?}");
+        let sentence = err.lines().next().unwrap_or_default();
+        assert!(sentence.contains("cannot be written to; choose a file"), "{arguments:?}\n{err}");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), before, "{arguments:?}");
+    }
 }

@@ -12,14 +12,23 @@ use marraztu_core::scene::{Mesh, Object, Texture};
 use marraztu_io::{self as io, Progress};
 use marraztu_render::accel::Accelerated as _;
 
-use super::jobs::Row;
+use super::digest::SourceHash;
 use super::outcome::Fault;
 use super::report::shown;
+use super::rows::Row;
 use crate::cli::render::cover;
 use crate::cli::stage::{Stage, Watch};
 
-/// A scene with its surfaces, before a camera is placed; or the reason why it cannot be loaded.
-type Loaded = Result<Arc<Stage>, Fault>;
+/// A scene with its surfaces, before a camera is placed.
+#[derive(Debug)]
+pub(super) struct LoadedStage {
+    pub(super) stage: Stage,
+    /// The hashes of the files, from before they were read.
+    pub(super) source: SourceHash,
+}
+
+/// A scene; or the reason why it cannot be loaded.
+type Loaded = Result<Arc<LoadedStage>, Fault>;
 
 /// A file, and the options that its loaded scene depends on.
 type Key = (PathBuf, String);
@@ -55,7 +64,7 @@ impl StageCache {
     /// Returns the scene of a row, and loads it if necessary. `stopped` says whether reading was
     /// cancelled because the batch ends; otherwise, the time limit was reached.
     pub(super) fn get(&self, row: &Row, progress: &Progress, stopped: &AtomicBool) -> Loaded {
-        let key = (row.file.clone(), row.parsed.model_text.clone());
+        let key = (row.file.clone(), row.kind.parsed.model_text.clone());
         let slot = {
             let mut entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
             entries.clock += 1;
@@ -78,7 +87,7 @@ impl StageCache {
         }
         *slot = Some(loaded.clone());
         drop(slot);
-        let bytes = loaded.as_ref().map_or(0, |stage| bytes_of(stage));
+        let bytes = loaded.as_ref().map_or(0, |loaded| bytes_of(&loaded.stage));
         self.keep(&key, bytes);
         loaded
     }
@@ -115,8 +124,9 @@ impl StageCache {
 
 /// Loads the scene of a row, with its surfaces.
 fn load(row: &Row, progress: &Progress) -> Loaded {
-    let options = &row.parsed.options;
+    let options = &row.kind.parsed.options;
     let files = [row.file.clone()];
+    let source = SourceHash::of(row);
     let stage = Stage::of(&files, &options.scene.reading, Watch::Progress(progress));
     let stage = stage.and_then(|mut stage| {
         cover(&mut stage, &options.scene.surfaces)?;
@@ -127,7 +137,9 @@ fn load(row: &Row, progress: &Progress) -> Loaded {
         }
         Ok(stage)
     });
-    stage.map(Arc::new).map_err(|failure| Fault::of(&failure))
+    let stage = stage.map_err(|failure| Fault::of(&failure))?;
+    let source = source.ok_or_else(|| Fault::Input("the model cannot be read".to_owned()))?;
+    Ok(Arc::new(LoadedStage { stage, source }))
 }
 
 /// Estimates the memory of a scene.
@@ -180,7 +192,7 @@ mod tests {
             let cache = StageCache::new(most);
             for job in &jobs {
                 let loaded = cache.get(&job.row, &Progress::new(), &AtomicBool::new(false));
-                assert_eq!(loaded.unwrap().scene.objects.len(), 1);
+                assert_eq!(loaded.unwrap().stage.scene.objects.len(), 1);
             }
             assert_eq!(cache.entries.lock().unwrap().map.len(), kept, "limit {most}");
         }

@@ -1,4 +1,4 @@
-//! `--dataset`: the folders and tables of data sets for training.
+//! `--dataset`: the folders and masks of data sets for training ([`super::tables`] has the tables).
 //!
 //! * `nerf`, for each model: `STEM/{color,depth,mask}/00000.png` and `STEM/transforms.json`.
 //! * `bop`, for each model or scene: `000000/{rgb,depth}/000000.png`,
@@ -11,7 +11,7 @@
 //! `bop_datasets_format.md` of bop_toolkit, <https://cocodataset.org/#format-data>, and
 //! nerfstudio's page on data conventions.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use glam::{DMat3, DMat4};
@@ -20,15 +20,15 @@ use marraztu_core::base::image::Size;
 use marraztu_core::scene::{Command, Item, ObjectId, Projection, UpAxis};
 use marraztu_io::{self as io, LayerKind, LayerNumbers, LayerPicture, PngNumbers};
 use marraztu_render::{AxesConvention, Layer, LayerSet, NormalSpace, PictureCamera, Renderer};
-use serde_json::{Value, json};
 
 use super::jobs::Job;
 use super::outcome::Fault;
+use super::rows::Rows;
 use super::template::{Fields, stem};
 use crate::cli::failure::Failure;
 
-/// Millimetres per unit.
-const MILLIMETRES: f64 = 1000.0;
+/// The masks of an object of BOP: alone, and behind the others.
+const MASKS: [&str; 2] = ["mask", "mask_visib"];
 
 /// A kind of data set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -83,37 +83,34 @@ impl Dataset {
 /// The entries of a picture in the tables.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct DatasetImage {
-    row: usize,
-    view: usize,
-    index: usize,
-    camera: PictureCamera,
-    depth_scale: f64,
-    objects: Vec<DatasetObject>,
+    pub(super) camera: PictureCamera,
+    pub(super) depth_scale: f64,
+    pub(super) objects: Vec<DatasetObject>,
 }
 
 /// An object of a picture.
 #[derive(Clone, Debug, PartialEq)]
-struct DatasetObject {
+pub(super) struct DatasetObject {
     /// The id in the layer of objects.
-    id: i32,
+    pub(super) id: i32,
     /// The model's file, or the name of the object.
-    model: PathBuf,
+    pub(super) model: PathBuf,
     /// From the model, with the axes of its file, to the camera, with the axes of OpenCV.
-    camera_from_model: DMat4,
+    pub(super) camera_from_model: DMat4,
     /// The visible pixels.
-    visible: Region,
+    pub(super) visible: Region,
     /// The pixels that the object would cover alone.
-    whole: Region,
+    pub(super) whole: Region,
     /// The runs of hidden and visible pixels, column by column.
-    runs: Vec<usize>,
+    pub(super) runs: Vec<usize>,
 }
 
 /// The number of pixels of a mask, and the box around them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-struct Region {
-    count: usize,
+pub(super) struct Region {
+    pub(super) count: usize,
     /// The left column, the upper row, width and height; -1 without a pixel.
-    bounds: [i64; 4],
+    pub(super) bounds: [i64; 4],
 }
 
 impl Region {
@@ -194,10 +191,8 @@ pub(super) fn image(
             rotation(camera_from_model).ok_or_else(|| {
                 Fault::Input(format!("{} is scaled or mirrored: BOP has rotations only", own.name))
             })?;
-            for (kind, mask) in [("mask", &whole), ("mask_visib", &visible)] {
-                let name = format!("{kind}/{:06}_{number:06}.png", job.view());
-                let folder = job.out().parent().and_then(Path::parent).unwrap_or(Path::new(""));
-                files.push((folder.join(name), mask_png(size, mask)?));
+            for (kind, mask) in MASKS.into_iter().zip([&whole, &visible]) {
+                files.push((mask_path(job, kind, number), mask_png(size, mask)?));
             }
         }
         objects.push(DatasetObject {
@@ -209,9 +204,77 @@ pub(super) fn image(
             runs: runs(size, &visible),
         });
     }
-    let (row, view, index) = (job.row.number, job.view(), job.index);
-    let depth_scale = job.row.parsed.options.layers.png().depth_scale;
-    Ok((files, DatasetImage { row, view, index, camera, depth_scale, objects }))
+    let depth_scale = job.options().layers.png().depth_scale;
+    Ok((files, DatasetImage { camera, depth_scale, objects }))
+}
+
+/// Checks that a folder holds no pictures of another data set that this one would leave. Fails with
+/// their number and the first name.
+pub(super) fn check_used_folder(
+    dataset: Dataset,
+    folder: &Path,
+    rows: &Rows,
+) -> Result<(), Failure> {
+    // The folders of pictures, with the number of pictures that are written there.
+    let mut folders = Vec::new();
+    let mut add = |folder: PathBuf, kinds: &[&str], count: usize| {
+        folders.extend(kinds.iter().map(|kind| (folder.join(kind), count)));
+    };
+    match dataset {
+        Dataset::Coco => add(folder.to_owned(), &["images", "panoptic"], rows.pictures),
+        Dataset::Nerf => rows.rows.iter().for_each(|row| {
+            add(folder.join(stem(&row.file)), &["color", "depth", "mask"], row.kind.views.len());
+        }),
+        Dataset::Bop => {
+            let scenes = numbered(folder, "").map(|(number, _)| number);
+            for scene in scenes.collect::<BTreeSet<_>>() {
+                let count = rows.rows.get(scene).map_or(0, |row| row.kind.views.len());
+                let kinds = ["rgb", "depth", "mask", "mask_visib"];
+                add(folder.join(format!("{scene:06}")), &kinds, count);
+            }
+        }
+    }
+    let stale = folders.into_iter().flat_map(|(folder, count)| {
+        let later = numbered(&folder, ".png").filter(move |(number, _)| *number >= count);
+        later.map(|(_, path)| path)
+    });
+    let stale: BTreeSet<PathBuf> = stale.collect();
+    let Some(first) = stale.first() else { return Ok(()) };
+    let (shown, first) = (folder.display(), first.display());
+    Err(Failure::Usage(format!(
+        "{shown} holds {} files of another data set that would stay, such as {first}; remove them, \
+         or choose another folder with --out",
+        stale.len(),
+    )))
+}
+
+/// Iterates over the entries of a folder with names such as 000012.png or 000012_000003.png, with
+/// their first number.
+fn numbered(folder: &Path, ending: &'static str) -> impl Iterator<Item = (usize, PathBuf)> + use<> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    entries.filter_map(move |entry| {
+        let name = entry.file_name();
+        let name = name.to_str()?.strip_suffix(ending)?;
+        let is_number = |text: &str| text.len() >= 5 && text.bytes().all(|it| it.is_ascii_digit());
+        let (first, second) = name.split_once('_').unwrap_or((name, "00000"));
+        let is_named = is_number(first) && is_number(second);
+        Some((first.parse().ok().filter(|_| is_named)?, entry.path()))
+    })
+}
+
+/// Returns the file of the mask of an object of BOP.
+fn mask_path(job: &Job, kind: &str, object: usize) -> PathBuf {
+    let folder = job.out().parent().and_then(Path::parent).unwrap_or(Path::new(""));
+    folder.join(format!("{kind}/{:06}_{object:06}.png", job.view()))
+}
+
+/// Removes the masks of an earlier run for objects that the scene no longer has.
+pub(super) fn remove_masks(job: &Job, objects: usize) {
+    for kind in MASKS {
+        let masks = (objects..).map(|object| mask_path(job, kind, object));
+        let is_mask = |path: &PathBuf| path.is_file() && io::check_replaced(path).is_ok();
+        masks.take_while(is_mask).for_each(|path| _ = std::fs::remove_file(path));
+    }
 }
 
 /// Returns the shot of one object, with all others hidden.
@@ -246,193 +309,13 @@ fn rotation(pose: DMat4) -> Option<DMat3> {
 }
 
 /// Returns the nine numbers of a matrix, row by row.
-fn nine(matrix: DMat3) -> [f64; 9] {
+pub(super) fn nine(matrix: DMat3) -> [f64; 9] {
     matrix.transpose().to_cols_array()
-}
-
-/// Writes the tables of a data set. Fails if a file cannot be written.
-pub(super) fn write_tables(
-    dataset: Dataset,
-    folder: &Path,
-    jobs: &[Job],
-    mut images: Vec<DatasetImage>,
-) -> Result<(), Failure> {
-    images.sort_by_key(|image| image.index);
-    let models: BTreeSet<&Path> =
-        images.iter().flat_map(|image| &image.objects).map(|object| &*object.model).collect();
-    let models = Models::of(&models);
-    match dataset {
-        // The cameras are the only table: see `write_cameras`.
-        Dataset::Nerf => Ok(()),
-        Dataset::Bop => write_bop(folder, &images, &models),
-        Dataset::Coco => write_coco(folder, jobs, &images, &models),
-    }
-}
-
-/// The models of a data set, with their numbers from 1 on.
-struct Models<'a> {
-    names: Vec<String>,
-    numbers: BTreeMap<&'a Path, usize>,
-}
-
-impl<'a> Models<'a> {
-    /// Numbers the models in the order of their names: the names of their files, with as many
-    /// folders as tell them apart.
-    fn of(models: &BTreeSet<&'a Path>) -> Self {
-        let name = |path: &Path, parts: usize| {
-            let all: Vec<_> = path.iter().map(|part| part.to_string_lossy()).collect();
-            all[all.len().saturating_sub(parts)..].join("/")
-        };
-        let (mut named, mut rest) = (Vec::new(), models.iter().copied().collect::<Vec<_>>());
-        let longest = models.iter().map(|path| path.iter().count()).max().unwrap_or(0);
-        for parts in 1..=longest {
-            let mut by_name: BTreeMap<String, Vec<&Path>> = BTreeMap::new();
-            for path in std::mem::take(&mut rest) {
-                by_name.entry(name(path, parts)).or_default().push(path);
-            }
-            for (name, paths) in by_name {
-                match paths[..] {
-                    [path] => named.push((name, path)),
-                    // Names that are not UTF-8 may look the same in their whole length.
-                    _ if parts == longest => {
-                        named.extend(paths.into_iter().map(|path| (name.clone(), path)));
-                    }
-                    _ => rest.extend(paths),
-                }
-            }
-        }
-        named.sort();
-        let numbers = named.iter().zip(1..).map(|((_, path), number)| (*path, number)).collect();
-        Self { names: named.into_iter().map(|(name, _)| name).collect(), numbers }
-    }
-
-    /// Iterates over numbers and names.
-    fn iter(&self) -> impl Iterator<Item = (usize, &str)> {
-        (1..).zip(self.names.iter().map(String::as_str))
-    }
-}
-
-fn write(path: &Path, content: &Value) -> Result<(), Failure> {
-    if let Some(folder) = path.parent() {
-        std::fs::create_dir_all(folder)
-            .map_err(|error| Failure::Write(folder.to_owned(), error))?;
-    }
-    Ok(io::save_encoded(path, format!("{content}\n").as_bytes())?)
-}
-
-fn write_bop(folder: &Path, images: &[DatasetImage], models: &Models<'_>) -> Result<(), Failure> {
-    let mut scenes: BTreeMap<usize, [BTreeMap<String, Value>; 3]> = BTreeMap::new();
-    for image in images {
-        let [cameras, poses, infos] = scenes.entry(image.row).or_default();
-        let view = image.view.to_string();
-        // The centre of the first pixel is (0, 0) there.
-        let mut k = image.camera.intrinsics();
-        k[0][2] -= 0.5;
-        k[1][2] -= 0.5;
-        let w2c = image.camera.camera_from_world(AxesConvention::OpenCv);
-        let millimetres = |pose: DMat4| (pose.w_axis.truncate() * MILLIMETRES).to_array();
-        let camera = json!({
-            "cam_K": k.as_flattened(),
-            "cam_R_w2c": nine(DMat3::from_mat4(w2c)),
-            "cam_t_w2c": millimetres(w2c),
-            "depth_scale": MILLIMETRES / image.depth_scale,
-        });
-        cameras.insert(view.clone(), camera);
-        let pose = |object: &DatasetObject| {
-            json!({
-                "cam_R_m2c": nine(DMat3::from_mat4(object.camera_from_model)),
-                "cam_t_m2c": millimetres(object.camera_from_model),
-                "obj_id": models.numbers.get(&*object.model),
-            })
-        };
-        poses.insert(view.clone(), image.objects.iter().map(pose).collect());
-        #[expect(clippy::cast_precision_loss, reason = "fewer than 2^53 pixels")]
-        let info = |object: &DatasetObject| {
-            let DatasetObject { visible, whole, .. } = object;
-            json!({
-                "bbox_obj": whole.bounds,
-                "bbox_visib": visible.bounds,
-                "px_count_all": whole.count,
-                "px_count_valid": whole.count,
-                "px_count_visib": visible.count,
-                "visib_fract": visible.count as f64 / whole.count.max(1) as f64,
-            })
-        };
-        infos.insert(view, image.objects.iter().map(info).collect());
-    }
-    for (scene, tables) in scenes {
-        let folder = folder.join(format!("{scene:06}"));
-        for (name, table) in ["scene_camera", "scene_gt", "scene_gt_info"].iter().zip(tables) {
-            write(&folder.join(format!("{name}.json")), &json!(table))?;
-        }
-    }
-    let names: BTreeMap<String, &str> =
-        models.iter().map(|(id, name)| (id.to_string(), name)).collect();
-    write(&folder.join("models.json"), &json!(names))
-}
-
-fn write_coco(
-    folder: &Path,
-    jobs: &[Job],
-    images: &[DatasetImage],
-    models: &Models<'_>,
-) -> Result<(), Failure> {
-    let paths: BTreeMap<usize, String> = jobs
-        .iter()
-        .filter_map(|job| {
-            let name = job.out().file_name()?.to_string_lossy().into_owned();
-            Some((job.index, name))
-        })
-        .collect();
-    let category = |(id, name): (usize, &str)| {
-        let kind = "model";
-        json!({"id": id, "name": name, "isthing": 1, "supercategory": kind})
-    };
-    let categories: Vec<Value> = models.iter().map(category).collect();
-    let (mut pictures, mut panoptic, mut instances) = (Vec::new(), Vec::new(), Vec::new());
-    for image in images {
-        let (id, size) = (image.index + 1, image.camera.size);
-        let name = paths.get(&image.index);
-        pictures.push(json!({
-            "id": id, "file_name": name, "width": size.width, "height": size.height,
-        }));
-        let mut segments = Vec::new();
-        for object in image.objects.iter().filter(|object| object.visible.count > 0) {
-            let DatasetObject { visible, model, .. } = object;
-            let category = models.numbers.get(&**model);
-            segments.push(json!({
-                "id": object.id, "category_id": category, "area": visible.count,
-                "bbox": visible.bounds, "iscrowd": 0,
-            }));
-            instances.push(json!({
-                "id": instances.len() + 1, "image_id": id, "category_id": category,
-                "segmentation": {"size": [size.height, size.width], "counts": object.runs},
-                "area": visible.count, "bbox": visible.bounds, "iscrowd": 0,
-            }));
-        }
-        panoptic.push(json!({"image_id": id, "file_name": name, "segments_info": segments}));
-    }
-    for (name, annotations) in [("panoptic", panoptic), ("instances", instances)] {
-        let table =
-            json!({"images": pictures, "annotations": annotations, "categories": categories});
-        write(&folder.join(format!("annotations/{name}.json")), &table)?;
-    }
-    Ok(())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn models_of_one_name_are_told_apart_by_their_folders() {
-        let paths = ["/x/a/model.obj", "/x/b/model.obj", "/x/cow.obj", "/y/b/model.obj", "tin"];
-        let models = Models::of(&paths.iter().map(Path::new).collect());
-        let names = ["a/model.obj", "cow.obj", "tin", "x/b/model.obj", "y/b/model.obj"];
-        assert_eq!(models.iter().map(|(_, name)| name).collect::<Vec<_>>(), names);
-        assert_eq!(models.iter().map(|(id, _)| id).collect::<Vec<_>>(), [1, 2, 3, 4, 5]);
-        assert_eq!(models.numbers[Path::new("/y/b/model.obj")], 5);
-    }
 
     #[test]
     fn a_mask_has_a_box_and_runs_of_columns() {

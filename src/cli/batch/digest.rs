@@ -4,6 +4,9 @@
 //! the model and of all files that it refers to, the options, the camera, the format and the
 //! program. The checksums of the test pictures stand for the renderer: they change if any picture
 //! changes, even if the version does not.
+//!
+//! Files are hashed before they are loaded. If a model is edited while its picture is drawn, the
+//! picture has the stamp of the old model, so a later run draws it again.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -17,81 +20,97 @@ use marraztu_lab::pictures;
 use sha2::{Digest as _, Sha256};
 
 use super::jobs::Job;
+use super::rows::Row;
 use crate::cli::stage::is_scene;
 
 /// The version of the stamp's content.
 const VERSION: u32 = 2;
 
-/// The hashes of a model.
-#[derive(Clone, Debug)]
-pub(super) struct ModelHash {
-    /// The SHA-256 of the file alone.
+/// The most hashes of a kind that are remembered.
+const MOST_KNOWN: usize = 10_000;
+
+/// The hashes of the files that a row is drawn from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct SourceHash {
+    /// The SHA-256 of the model or scene alone.
     pub(super) file: String,
     /// The hash of the file and all files that it refers to.
     all: String,
+    /// The SHA-256 of the texture of the options, empty if it cannot be read.
+    texture: Option<String>,
+}
+
+impl SourceHash {
+    /// Hashes the files of a row as they are now. `None` if the model cannot be read.
+    pub(super) fn of(row: &Row) -> Option<Self> {
+        Self::by(row, &|path| hash_of_file(path).ok())
+    }
+
+    fn by(row: &Row, hash: &dyn Fn(&Path) -> Option<String>) -> Option<Self> {
+        let file = hash(&row.file)?;
+        let mut all = format!("{file}\n");
+        for (name, path) in companions(&row.file)? {
+            let hash = path.map_or_else(
+                || "missing".to_owned(),
+                |path| hash(&path).unwrap_or_else(|| "unreadable".to_owned()),
+            );
+            // Writing to a string cannot fail.
+            let _ = writeln!(all, "{name:?} {hash}");
+        }
+        let texture = row.texture().map(|path| hash(path).unwrap_or_default());
+        Some(Self { file, all: hex(&Sha256::digest(all)), texture })
+    }
 }
 
 /// A value that several threads may need, computed by the first.
 type Slot<T> = Arc<Mutex<Option<T>>>;
 
-/// Computes stamps. Each file is hashed once.
+/// Values by file, remembered in part.
+type Memory<K, T> = Mutex<BTreeMap<K, Slot<Option<T>>>>;
+
+/// Computes stamps.
 #[derive(Debug)]
 pub(super) struct Stamper {
     /// The program's version and its renderer.
     program: String,
-    models: Mutex<BTreeMap<PathBuf, Slot<Option<ModelHash>>>>,
-    files: Mutex<BTreeMap<PathBuf, Slot<Option<String>>>>,
+    /// The hashes by model and texture, and by file.
+    sources: Memory<(PathBuf, Option<PathBuf>), SourceHash>,
+    files: Memory<PathBuf, String>,
 }
 
 impl Stamper {
     pub(super) fn new() -> Self {
         let mut program = format!("marraztu {}\n", env!("CARGO_PKG_VERSION"));
         for (name, sum) in pictures::listed() {
-            // Writing to a string cannot fail.
             let _ = writeln!(program, "{sum:016x} {name}");
         }
         let program = hex(&Sha256::digest(program));
-        Self { program, models: Mutex::default(), files: Mutex::default() }
+        Self { program, sources: Mutex::default(), files: Mutex::default() }
     }
 
-    /// Returns the stamp of a job. `None` if its model cannot be read.
-    pub(super) fn stamp(&self, job: &Job) -> Option<String> {
-        let model = self.model(&job.row.file)?;
-        let (camera, size) = (job.camera(), job.size());
-        let texture = job.row.parsed.options.scene.surfaces.texture.as_deref();
-        let texture = texture.map(|path| self.file(path).unwrap_or_default());
+    /// Returns the stamp of a picture that is drawn from files with these hashes.
+    pub(super) fn stamp(&self, job: &Job, source: &SourceHash) -> String {
+        let (camera, size, texture) = (job.camera(), job.size(), &source.texture);
         let text = format!(
             "{VERSION}\n{}\n{}\n{}{:?}\n{}x{}\n{}\n{texture:?}\n",
             self.program,
-            model.all,
-            job.row.parsed.text,
+            source.all,
+            job.row.kind.parsed.text,
             camera.aim,
             size.width,
             size.height,
             job.encodings(),
         );
-        Some(hex(&Sha256::digest(text)))
+        hex(&Sha256::digest(text))
     }
 
-    /// Returns the hashes of a model or scene. `None` if it cannot be read.
-    pub(super) fn model(&self, path: &Path) -> Option<ModelHash> {
-        once(&self.models, path, || {
-            let file = self.file(path)?;
-            let mut all = format!("{file}\n");
-            for (name, path) in companions(path)? {
-                let hash = path.map_or_else(
-                    || Some("missing".to_owned()),
-                    |path| Some(self.file(&path).unwrap_or_else(|| "unreadable".to_owned())),
-                );
-                let _ = writeln!(all, "{name:?} {}", hash.unwrap_or_default());
-            }
-            Some(ModelHash { file, all: hex(&Sha256::digest(all)) })
-        })
-    }
-
-    /// Returns the SHA-256 of a file.
-    fn file(&self, path: &Path) -> Option<String> {
-        once(&self.files, path, || hash_of_file(path).ok())
+    /// Returns the hashes of the files of a row, as they were at the first call. `None` if the
+    /// model cannot be read. Pictures are compared with these hashes; a picture that is drawn has
+    /// the hashes of its loaded files ([`SourceHash::of`]).
+    pub(super) fn known(&self, row: &Row) -> Option<SourceHash> {
+        let key = (row.file.clone(), row.texture().map(Path::to_owned));
+        let file = |path: &Path| once(&self.files, path.to_owned(), || hash_of_file(path).ok());
+        once(&self.sources, key, || SourceHash::by(row, &file))
     }
 }
 
@@ -110,15 +129,18 @@ pub(super) fn companions(path: &Path) -> Option<Vec<(String, Option<PathBuf>)>> 
     Some(files)
 }
 
-/// Returns the value of a path, computed at most once at a time.
-fn once<T: Clone>(
-    map: &Mutex<BTreeMap<PathBuf, Slot<T>>>,
-    path: &Path,
-    compute: impl FnOnce() -> T,
-) -> T {
+/// Returns the value of a key, computed at most once at a time.
+fn once<K: Ord, T: Clone>(
+    memory: &Memory<K, T>,
+    key: K,
+    compute: impl FnOnce() -> Option<T>,
+) -> Option<T> {
     let slot = {
-        let mut map = map.lock().unwrap_or_else(PoisonError::into_inner);
-        Arc::clone(map.entry(path.to_owned()).or_default())
+        let mut map = memory.lock().unwrap_or_else(PoisonError::into_inner);
+        if map.len() >= MOST_KNOWN {
+            map.clear();
+        }
+        Arc::clone(map.entry(key).or_default())
     };
     let mut value = slot.lock().unwrap_or_else(PoisonError::into_inner);
     value.get_or_insert_with(compute).clone()
@@ -152,6 +174,7 @@ fn hex(bytes: &[u8]) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::tests::jobs_of;
     use super::*;
 
     #[test]
@@ -170,7 +193,11 @@ mod tests {
     fn a_model_has_another_hash_after_each_change_of_a_file_that_it_refers_to() {
         let folder = tempfile::tempdir().unwrap();
         let at = |name: &str| folder.path().join(name);
-        let hash = || Stamper::new().model(&at("a.obj")).unwrap();
+        let row = |name: &str| {
+            let jobs = jobs_of(&[at(name).to_str().unwrap()]).unwrap();
+            Arc::clone(&jobs[0].row)
+        };
+        let hash = || Stamper::new().known(&row("a.obj")).unwrap();
         std::fs::write(at("a.obj"), "mtllib a.mtl\nv 0 0 0\n").unwrap();
         let mut all = vec![hash().all];
         for (name, text) in [
@@ -189,6 +216,6 @@ mod tests {
         all.sort();
         all.dedup();
         assert_eq!(all.len(), 6, "every change shows");
-        assert!(Stamper::new().model(&at("absent.obj")).is_none());
+        assert!(Stamper::new().known(&row("absent.obj")).is_none());
     }
 }

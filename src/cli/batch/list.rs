@@ -2,6 +2,7 @@
 
 use std::io::Read as _;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use marraztu_io::read_file;
 use serde_json::Value as Json;
@@ -20,12 +21,28 @@ pub(super) const NO_COLUMN: &str = "there is no such option of pictures; a list 
 /// A row of a list, or a file among the arguments.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Entry {
-    /// The place for messages, such as "list.csv:3".
-    pub(super) place: String,
+    /// The line in a list; `None` for a file among the arguments.
+    pub(super) line: Option<Line>,
     /// The model or scene.
     pub(crate) file: PathBuf,
     /// The other columns that have a value, by name.
     pub(super) values: Vec<(String, Value)>,
+}
+
+/// A line of a list.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Line {
+    /// The name of the list, which all lines share.
+    list: Arc<str>,
+    number: usize,
+}
+
+/// Returns the place of an entry for messages, such as "list.csv:3".
+pub(super) fn place(line: Option<&Line>, file: &Path) -> String {
+    match line {
+        Some(Line { list, number }) => format!("{list}:{number}"),
+        None => file.display().to_string(),
+    }
 }
 
 /// The format of a list.
@@ -43,7 +60,7 @@ pub(crate) fn read_list(
     is_column: &dyn Fn(&str) -> bool,
 ) -> Result<Vec<Entry>, Failure> {
     let text = read_text(path)?;
-    let name = shown(path);
+    let name = Arc::from(shown(path));
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
     let entries = match format_of(path, text) {
         ListFormat::Csv => from_csv(&name, text, is_column),
@@ -92,10 +109,10 @@ fn format_of(path: &Path, text: &str) -> ListFormat {
     }
 }
 
-fn from_lines(name: &str, text: &str) -> Vec<Entry> {
+fn from_lines(name: &Arc<str>, text: &str) -> Vec<Entry> {
     let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let entry = |(i, line): (usize, &str)| Entry {
-        place: format!("{name}:{}", i + 1),
+        line: Some(Line { list: Arc::clone(name), number: i + 1 }),
         file: PathBuf::from(line),
         values: Vec::new(),
     };
@@ -108,7 +125,7 @@ fn column_name(column: &str) -> String {
 }
 
 fn from_csv(
-    name: &str,
+    name: &Arc<str>,
     text: &str,
     is_column: &dyn Fn(&str) -> bool,
 ) -> Result<Vec<Entry>, String> {
@@ -140,16 +157,16 @@ fn from_csv(
     let mut entries = Vec::new();
     for record in reader.records() {
         let record = record.map_err(|error| of_line(&error))?;
-        let line = line_of(record.position());
+        let number = usize::try_from(line_of(record.position())).unwrap_or(usize::MAX);
         // Empty cells keep the option of the command line.
         let cells = header.iter().zip(&record).filter(|(_, cell)| !cell.is_empty());
         let values = cells.map(|(name, cell)| (name.clone(), Value::Text(cell.to_owned())));
-        entries.push(entry(format!("{name}:{line}"), values.collect())?);
+        entries.push(entry(Line { list: Arc::clone(name), number }, values.collect())?);
     }
     Ok(entries)
 }
 
-fn from_json_lines(name: &str, text: &str) -> Result<Vec<Entry>, String> {
+fn from_json_lines(name: &Arc<str>, text: &str) -> Result<Vec<Entry>, String> {
     let lines = text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty());
     let row = |(i, line): (usize, &str)| {
         let place = format!("{name}:{}", i + 1);
@@ -165,7 +182,7 @@ fn from_json_lines(name: &str, text: &str) -> Result<Vec<Entry>, String> {
                 .map_err(|reason| format!("{place}: column {column:?}: {reason}"))?;
             values.extend(value.map(|value| (column, value)));
         }
-        entry(place, values)
+        entry(Line { list: Arc::clone(name), number: i + 1 }, values)
     };
     lines.map(row).collect()
 }
@@ -191,11 +208,13 @@ fn json_value(json: &Json) -> Result<Option<Value>, String> {
 }
 
 /// Makes an entry from columns; one of them is the file.
-fn entry(place: String, mut values: Vec<(String, Value)>) -> Result<Entry, String> {
+fn entry(line: Line, mut values: Vec<(String, Value)>) -> Result<Entry, String> {
     let file = values.iter().position(|(name, _)| name == FILE).map(|i| values.remove(i).1);
     match file {
-        Some(Value::Text(file)) => Ok(Entry { place, file: PathBuf::from(file), values }),
-        _ => Err(format!("{place}: the row names no file")),
+        Some(Value::Text(file)) => {
+            Ok(Entry { line: Some(line), file: PathBuf::from(file), values })
+        }
+        _ => Err(format!("{}:{}: the row names no file", line.list, line.number)),
     }
 }
 
@@ -204,10 +223,9 @@ fn entry(place: String, mut values: Vec<(String, Value)>) -> Result<Entry, Strin
 pub(crate) fn expanded(files: &[PathBuf]) -> Result<Vec<Entry>, Failure> {
     let mut entries = Vec::new();
     for file in files {
-        let place = file.display().to_string();
         let text = file.to_str().filter(|text| text.contains(['*', '?', '[']));
         let Some(pattern) = text.filter(|_| !file.exists()) else {
-            entries.push(Entry { place, file: file.clone(), values: Vec::new() });
+            entries.push(Entry { line: None, file: file.clone(), values: Vec::new() });
             continue;
         };
         let found = glob::glob(pattern);
@@ -216,10 +234,8 @@ pub(crate) fn expanded(files: &[PathBuf]) -> Result<Vec<Entry>, Failure> {
         if found.is_empty() {
             return Err(Failure::Usage(format!("no file matches {pattern}")));
         }
-        entries.extend(found.into_iter().map(|file| {
-            let place = file.display().to_string();
-            Entry { place, file, values: Vec::new() }
-        }));
+        let entry = |file| Entry { line: None, file, values: Vec::new() };
+        entries.extend(found.into_iter().map(entry));
     }
     Ok(entries)
 }
@@ -234,8 +250,9 @@ mod tests {
 
     #[test]
     fn three_formats_give_the_same_rows() {
-        let entry = |line: usize, file: &str, values: &[(&str, Value)]| Entry {
-            place: format!("list:{line}"),
+        let list: Arc<str> = "list".into();
+        let entry = |number: usize, file: &str, values: &[(&str, Value)]| Entry {
+            line: Some(Line { list: Arc::clone(&list), number }),
             file: file.into(),
             values: values
                 .iter()
@@ -244,7 +261,7 @@ mod tests {
         };
         let csv = "file,size,flip_winding\n\"a, b.obj\",64x32,true\nc.obj,,\n";
         assert_eq!(
-            from_csv("list", csv, &|_| true).unwrap(),
+            from_csv(&"list".into(), csv, &|_| true).unwrap(),
             [
                 entry(2, "a, b.obj", &[("size", text("64x32")), ("flip-winding", text("true"))]),
                 entry(3, "c.obj", &[]),
@@ -254,13 +271,13 @@ mod tests {
 
             {"file":"c.obj","size":64}"#;
         assert_eq!(
-            from_json_lines("list", json).unwrap(),
+            from_json_lines(&"list".into(), json).unwrap(),
             [
                 entry(1, "a, b.obj", &[("edges", Value::Switch(true)), ("from", text("30,-5.5"))]),
                 entry(3, "c.obj", &[("size", text("64"))]),
             ]
         );
-        let plain = from_lines("list", "a, b.obj\n\nc.obj\n");
+        let plain = from_lines(&"list".into(), "a, b.obj\n\nc.obj\n");
         assert_eq!(plain, [entry(1, "a, b.obj", &[]), entry(3, "c.obj", &[])]);
     }
 
@@ -288,18 +305,25 @@ mod tests {
             ("file,size\na.obj,64\n\n\r\n,64\n", "list:5: the row names no file"),
             ("file,size\na.obj,64\n\nb.obj\n", "list:4: the row has 1 columns"),
         ] {
-            assert!(from_csv("list", csv, &|_| true).unwrap_err().starts_with(reason), "{csv}");
+            assert!(
+                from_csv(&"list".into(), csv, &|_| true).unwrap_err().starts_with(reason),
+                "{csv}"
+            );
         }
-        let unknown = from_csv("list", "file,colour\n", &|name| name == "size").unwrap_err();
+        let unknown =
+            from_csv(&"list".into(), "file,colour\n", &|name| name == "size").unwrap_err();
         assert!(unknown.starts_with("list:1: column colour: there is no such option"), "{unknown}");
-        let unquoted = from_json_lines("list", "{\"file\": 3}").unwrap_err();
+        let unquoted = from_json_lines(&"list".into(), "{\"file\": 3}").unwrap_err();
         assert_eq!(unquoted, "list:1: column \"file\": 3 is not a path in quotes");
         for (json, reason) in [
             ("{\"size\":64}", "list:1: the row names no file"),
             ("{\"file\":\"a\"}\n[1]", "list:2: "),
             ("{\"file\":\"a\",\"size\":{}}", "list:1: column \"size\": "),
         ] {
-            assert!(from_json_lines("list", json).unwrap_err().starts_with(reason), "{json}");
+            assert!(
+                from_json_lines(&"list".into(), json).unwrap_err().starts_with(reason),
+                "{json}"
+            );
         }
     }
 }

@@ -10,8 +10,8 @@ use super::outcome::{Fault, Outcome};
 use crate::cli::say;
 use crate::cli::talk;
 
-/// The time between two lines.
-const PERIOD: Duration = Duration::from_secs(10);
+/// The time between two lines, and the one with `--progress`.
+const PERIODS: [Duration; 2] = [Duration::from_secs(10), Duration::from_secs(1)];
 
 /// The most distinct errors that are printed.
 const MOST_ERRORS: usize = 20;
@@ -25,8 +25,9 @@ pub(super) struct Meter {
     /// The pictures of earlier runs.
     unchanged: usize,
     begin: Instant,
-    /// The time of the next line.
+    /// The time of the next line, and between two lines.
     next: Instant,
+    period: Duration,
     /// The bar, on a terminal.
     bar: Option<ProgressBar>,
     /// The errors that were printed.
@@ -47,9 +48,10 @@ impl Meter {
                 Err(_) => bar,
             }
         });
-        let begin = Instant::now();
-        let errors = BTreeSet::new();
-        Self { all, done: 0, missing: 0, unchanged: 0, begin, next: begin + PERIOD, bar, errors }
+        let (begin, errors) = (Instant::now(), BTreeSet::new());
+        let period = PERIODS[usize::from(talk::tells_progress())];
+        let next = begin + period;
+        Self { all, done: 0, missing: 0, unchanged: 0, begin, next, period, bar, errors }
     }
 
     /// Counts a result, and prints its error if it is a new one.
@@ -85,17 +87,25 @@ impl Meter {
         if self.bar.is_some() || talk::is_quiet() || Instant::now() < self.next {
             return;
         }
-        self.next += PERIOD;
+        self.next += self.period;
+        self.tell();
+    }
+
+    fn tell(&self) {
         let Self { done, all, missing, .. } = *self;
         let rate = self.rate();
-        let text = format!("{done} of {all} pictures, {missing} missing, {rate:.1} a second");
+        let left = time_left(all - done, rate);
+        let text =
+            format!("{done} of {all} pictures, {missing} missing, {rate:.1} a second, {left} left");
         say("progress", &text);
     }
 
-    /// Removes the bar.
+    /// Removes the bar, or prints a last line with `--progress`.
     pub(super) fn finish(&self) {
         if let Some(bar) = &self.bar {
             bar.finish_and_clear();
+        } else if talk::tells_progress() {
+            self.tell();
         }
     }
 
@@ -108,5 +118,40 @@ impl Meter {
     #[expect(clippy::cast_precision_loss, reason = "for the eye")]
     pub(super) fn rate(&self) -> f64 {
         self.done as f64 / self.begin.elapsed().as_secs_f64().max(1e-9)
+    }
+}
+
+/// Returns the time for this number of pictures: "35 s", "12 min", "3 h 20 min".
+#[expect(clippy::cast_precision_loss, reason = "for the eye")]
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "limited before")]
+fn time_left(pictures: usize, rate: f64) -> String {
+    // Longer times are a guess of the first seconds.
+    let seconds = (pictures as f64 / rate).min(1e8);
+    match seconds {
+        0.0..99.5 => format!("{seconds:.0} s"),
+        0.0..5970.0 => format!("{:.0} min", seconds / 60.0),
+        0.0.. => {
+            let minutes = (seconds / 60.0).round() as u64;
+            format!("{} h {} min", minutes / 60, minutes % 60)
+        }
+        _ => "an unknown time".to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_time_left_has_a_unit_that_suits_it() {
+        for (pictures, rate, text) in [
+            (0, 5.0, "0 s"),
+            (175, 5.0, "35 s"),
+            (3600, 5.0, "12 min"),
+            (60_000, 5.0, "3 h 20 min"),
+            (5, 0.0, "27777 h 47 min"),
+        ] {
+            assert_eq!(time_left(pictures, rate), text);
+        }
     }
 }

@@ -1,12 +1,14 @@
 //! `marraztu batch`: draws many pictures.
 //!
 //! ```text
-//! list  ->  rows  ->  jobs  ->  shard  ->  threads  ->  report
+//! list  ->  rows  ->  shard  ->  jobs  ->  threads  ->  report
 //! ```
 //!
 //! Everything that can be checked is checked before the first picture: the list, its options, the
-//! cameras and the names of the outputs ([`jobs`]). Then each thread draws one picture at a time
-//! ([`studio`]), and the main thread collects the results ([`report`]).
+//! cameras ([`rows`]) and the names of the outputs ([`outputs`]). Then each thread draws one
+//! picture at a time ([`studio`]), and the main thread collects the results ([`report`],
+//! [`tables`]). Rows and hashes of names are held in memory, but neither pictures nor results, so
+//! the number of pictures has no limit.
 
 mod cache;
 mod dataset;
@@ -16,37 +18,45 @@ pub(super) mod list;
 mod meter;
 mod options;
 mod outcome;
+mod outputs;
 pub(super) mod report;
+mod rows;
 mod shard;
 mod sheets;
 mod studio;
+mod tables;
 mod template;
 pub(super) mod views;
 
 use std::collections::BTreeSet;
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::thread::Builder;
 use std::time::{Duration, Instant};
 
 use clap::Args;
+use marraztu_core::base::threads::{self, Caller};
 use marraztu_io::{PICTURE_FORMATS, Sources};
 use signal_hook::consts::{SIGINT, SIGTERM};
 
-use self::dataset::{Dataset, write_tables};
-use self::jobs::{Job, Jobs};
+use self::dataset::{Dataset, check_used_folder};
+use self::jobs::Plan;
 use self::meter::Meter;
 use self::options::OptionTexts;
 use self::outcome::Outcome;
 pub(super) use self::outcome::Status;
+use self::outputs::{check_inputs, check_outputs};
 use self::report::{Counts, Reporter, check_report};
+use self::rows::{Row, Rows};
 use self::shard::{Shard, shard};
 use self::sheets::{Grid, check_sheets, grid, write_sheets};
 use self::studio::{Studio, silence_panics};
+use self::tables::Tables;
 use super::arguments::choice;
-use super::cameras::{CAMERAS, check_cameras, write_cameras};
+use super::cameras::{CAMERAS, Cameras, Earlier, check_cameras};
 use super::failure::Failure;
 use super::layers::NUMBER_ENDINGS;
 use super::talk::{Talk, note, print};
@@ -60,6 +70,9 @@ const GRACE: Duration = Duration::from_millis(1500);
 
 /// The time between two looks at signals and limits.
 const PERIOD: Duration = Duration::from_millis(20);
+
+/// The most results that wait to be written.
+const MOST_WAITING: usize = 64;
 
 /// The stack of a thread that draws.
 const STACK: usize = 16 << 20;
@@ -160,63 +173,98 @@ pub(crate) struct Batch {
 pub(super) fn batch(arguments: Box<Batch>) -> Result<(), Failure> {
     let arguments: Arc<Batch> = Arc::from(arguments);
     arguments.talk.apply();
-    let Jobs { jobs, all, inputs } = Jobs::of(&arguments)?;
+    let rows = Rows::of(&arguments)?;
+    check_outputs(&rows, &arguments)?;
+    let plan = Plan::of(&rows.rows, arguments.shard.unwrap_or(Shard::WHOLE));
+    check_inputs(&plan, &rows)?;
     if arguments.dry_run {
-        return print(&listed(&jobs));
-    }
-    let (report, times) = (arguments.report.as_deref(), arguments.times.as_deref());
-    report.iter().chain(&times).try_for_each(|path| check_report(path, &inputs))?;
-    if let Some(grid) = arguments.sheet {
-        check_sheets(grid, &arguments.sheets, &jobs)?;
+        return print_jobs(&plan);
     }
     let name = cameras_name(&arguments);
-    if !matches!(arguments.dataset, Some(Dataset::Bop | Dataset::Coco)) {
-        check_all_cameras(&name, &jobs, arguments.dataset, &inputs)?;
-    }
-    let studio = Arc::new(Studio::new(jobs, Arc::clone(&arguments)));
-    let mut reporter = Reporter::begin(studio.jobs(), all, report, times)?;
-    let mut meter = Meter::of(studio.jobs().len());
-    let (mut done, mut cameras, mut images) = (Vec::new(), Vec::new(), Vec::new());
-    let mut repaired = 0;
+    check_files(&arguments, &name, &plan, &rows)?;
+    drop(rows);
+    let studio = Arc::new(Studio::new(plan, Arc::clone(&arguments)));
+    let mut results = Results::begin(&arguments, name, studio.plan())?;
     let signal = watched_signals();
     silence_panics();
-    let results = start(&studio, arguments.threads())?;
-    let ended = collect(&studio, &results, &signal, &mut |outcome| {
-        meter.tick();
-        let Some(mut outcome) = outcome else { return Ok(true) };
-        meter.add(&outcome);
-        reporter.add(&outcome)?;
-        if let Ok(drawn) = &mut outcome.result {
-            done.push(outcome.job);
-            repaired += usize::from(!drawn.findings.is_empty());
-            cameras.extend(drawn.camera.take().map(|camera| *camera));
-            images.extend(drawn.image.take().map(|image| *image));
-        }
-        Ok(!arguments.stop || outcome.result.is_ok())
+    let outcomes = start(&studio, arguments.threads())?;
+    let ended = collect(&studio, &outcomes, &signal, &mut |outcome| {
+        results.meter.tick();
+        outcome.map_or(Ok(true), |outcome| results.add(outcome))
     });
+    let Results { meter, reporter, cameras, tables, mut done, repaired, .. } = results;
     meter.finish();
-    let unchanged = meter.unchanged();
     let counts = reporter.finish()?;
-    match arguments.dataset {
-        Some(dataset @ (Dataset::Bop | Dataset::Coco)) => {
-            let folder = Path::new(arguments.out.as_deref().unwrap_or_default());
-            write_tables(dataset, folder, studio.jobs(), images)?;
-        }
-        Some(Dataset::Nerf) | None => write_cameras(&name, cameras)?,
-    }
+    tables.map_or(Ok(()), Tables::write)?;
+    cameras.write()?;
     ended?;
     if let Some(grid) = arguments.sheet {
-        let mut jobs: Vec<&Job> = done.iter().map(|job| &studio.jobs()[*job]).collect();
-        jobs.sort_by_key(|job| job.index);
+        done.sort_unstable();
+        let jobs: Vec<usize> = done.into_iter().map(|(_, position)| position).collect();
         let wanted = || signal.load(Ordering::Relaxed) == 0;
-        write_sheets(grid, &arguments.sheets, &jobs, &wanted)?;
+        write_sheets(grid, &arguments.sheets, (studio.plan(), &jobs), &wanted)?;
     }
-    tell(&counts, unchanged, meter.rate());
+    tell(&counts, meter.unchanged(), meter.rate());
     if repaired > 0 {
         let list = if arguments.report.is_some() { "the report" } else { "--report" };
         note(&format_args!("{repaired} of the pictures have findings: {list} lists them"));
     }
     status(&counts, signal.load(Ordering::Relaxed), arguments.strict_exit)
+}
+
+/// The results of a batch, as they come.
+struct Results<'a> {
+    meter: Meter,
+    reporter: Reporter<'a>,
+    cameras: Cameras,
+    /// The tables of a data set.
+    tables: Option<Tables>,
+    /// The numbers and positions of finished jobs, for contact sheets.
+    done: Vec<(usize, usize)>,
+    has_sheets: bool,
+    stops: bool,
+    /// The number of pictures of models with findings.
+    repaired: usize,
+}
+
+impl<'a> Results<'a> {
+    fn begin(arguments: &Batch, name: String, plan: &'a Plan) -> Result<Self, Failure> {
+        let (report, times) = (arguments.report.as_deref(), arguments.times.as_deref());
+        let folder = Path::new(arguments.out.as_deref().unwrap_or_default());
+        let earlier = match arguments.dataset {
+            Some(_) => Earlier::Dropped,
+            None => Earlier::Kept,
+        };
+        Ok(Self {
+            meter: Meter::of(plan.len()),
+            reporter: Reporter::begin(plan, report, times)?,
+            cameras: Cameras::new(name, earlier),
+            tables: arguments.dataset.and_then(|dataset| Tables::of(dataset, folder)),
+            done: Vec::new(),
+            has_sheets: arguments.sheet.is_some(),
+            stops: arguments.stop,
+            repaired: 0,
+        })
+    }
+
+    /// Adds a result. Returns whether the batch goes on. Fails if a file cannot be written.
+    fn add(&mut self, mut outcome: Outcome) -> Result<bool, Failure> {
+        self.meter.add(&outcome);
+        self.reporter.add(&outcome)?;
+        let job = &outcome.job;
+        let Ok(drawn) = &mut outcome.result else { return Ok(!self.stops) };
+        if self.has_sheets {
+            self.done.push((job.index, job.position));
+        }
+        self.repaired += usize::from(!drawn.findings.is_empty());
+        match (&mut self.tables, &drawn.image) {
+            (Some(tables), Some(image)) => tables.add(job, image)?,
+            (None, _) | (_, None) => {
+                drawn.camera.take().map_or(Ok(()), |camera| self.cameras.add(*camera))?;
+            }
+        }
+        Ok(true)
+    }
 }
 
 impl Batch {
@@ -238,28 +286,51 @@ fn cameras_name(arguments: &Batch) -> String {
     }
 }
 
-/// Checks that no file of cameras would replace a file of another program.
-fn check_all_cameras(
-    name: &str,
-    jobs: &[Job],
-    dataset: Option<Dataset>,
-    inputs: &Sources,
-) -> Result<(), Failure> {
-    let with_layers = jobs.iter().filter(|job| job.row.parsed.options.layers.are_given());
-    let folders: BTreeSet<&Path> = with_layers.map(|job| job.cameras_folder(dataset)).collect();
-    folders.into_iter().map(|folder| folder.join(name)).try_for_each(|path| {
-        inputs.spare(&path)?;
-        check_cameras(&path)
+/// Checks that no report, sheet or file of cameras would replace an input or a file of another
+/// program, and that a data set does not mix with an earlier one.
+fn check_files(arguments: &Batch, cameras: &str, plan: &Plan, rows: &Rows) -> Result<(), Failure> {
+    let reports: Vec<&PathBuf> = arguments.report.iter().chain(&arguments.times).collect();
+    let mut folders = BTreeSet::new();
+    let has_layers = |row: &Arc<Row>| row.kind.parsed.options.layers.are_given();
+    let has_tables = matches!(arguments.dataset, Some(Dataset::Bop | Dataset::Coco));
+    if !has_tables && plan.rows().iter().any(has_layers) {
+        let with_layers = plan.jobs().filter(|job| job.options().layers.are_given());
+        folders.extend(with_layers.map(|job| job.cameras_folder(arguments.dataset).to_owned()));
+    }
+    let cameras: Vec<PathBuf> = folders.into_iter().map(|folder| folder.join(cameras)).collect();
+    // Collecting the inputs takes long, and a file that does not exist is none.
+    let inputs = match reports.iter().copied().chain(&cameras).any(|path| path.exists()) {
+        true => rows.inputs(),
+        false => Sources::default(),
+    };
+    reports.into_iter().try_for_each(|path| check_report(path, &inputs))?;
+    if let Some(grid) = arguments.sheet {
+        check_sheets(grid, &arguments.sheets, plan)?;
+    }
+    if let Some(dataset) = arguments.dataset {
+        let folder = Path::new(arguments.out.as_deref().unwrap_or_default());
+        check_used_folder(dataset, folder, rows)?;
+    }
+    cameras.iter().try_for_each(|path| {
+        inputs.spare(path)?;
+        check_cameras(path)
     })
 }
 
-/// Returns a line for each job.
-fn listed(jobs: &[Job]) -> String {
-    let line = |job: &Job| {
+/// Prints a line for each job.
+fn print_jobs(plan: &Plan) -> Result<(), Failure> {
+    /// The size of a piece of the text.
+    const PIECE: usize = 1 << 16;
+    let mut text = String::new();
+    for job in plan.jobs() {
         let (file, out) = (job.row.file.display(), job.out().display());
-        format!("{}\t{file}\t{}\t{out}\n", job.index, job.camera().name)
-    };
-    jobs.iter().map(line).collect()
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{}\t{file}\t{}\t{out}", job.index, job.camera().name);
+        if text.len() > PIECE {
+            print(&std::mem::take(&mut text))?;
+        }
+    }
+    print(&text)
 }
 
 /// Returns a cell that holds the number of the last signal to end.
@@ -273,17 +344,29 @@ fn watched_signals() -> Arc<AtomicUsize> {
     cell
 }
 
-/// Starts the threads. The channel closes when all have ended.
+/// Starts the threads, or as many as the system allows. The channel closes when all have ended.
 fn start(studio: &Arc<Studio>, threads: usize) -> Result<Receiver<Outcome>, Failure> {
-    let failed = |error| Failure::Usage(format!("a thread cannot be started: {error}"));
-    let (sender, results) = channel();
+    let (sender, results) = sync_channel(MOST_WAITING);
     let named = |name: String| Builder::new().name(name).stack_size(STACK);
     for i in 0..threads {
         let (studio, sender) = (Arc::clone(studio), sender.clone());
-        named(format!("draw {i}")).spawn(move || studio.work(&sender)).map_err(failed)?;
+        match named(format!("draw {i}")).spawn(move || studio.work(&sender)) {
+            Ok(_) => {}
+            Err(_limit) if i > 0 => break,
+            Err(error) => {
+                let reason = format!("a thread to draw cannot be started: {error}");
+                return Err(Failure::Absent(reason));
+            }
+        }
     }
     let studio = Arc::clone(studio);
-    named("read".to_owned()).spawn(move || studio.read_ahead()).map_err(failed)?;
+    let read = move || {
+        // This thread is a member, so there is a pool, however many threads the system allows.
+        let _pool = threads::pool(threads, Caller::Joins, "load");
+        studio.read_ahead();
+    };
+    // Without this thread, each model is read by the first thread that draws it.
+    let _ = named("read".to_owned()).spawn(read);
     Ok(results)
 }
 
@@ -383,6 +466,7 @@ fn bytes(text: &str) -> Result<usize, String> {
 
 #[cfg(test)]
 mod tests {
+    use super::jobs::Job;
     use super::*;
 
     /// Returns the jobs of a command line.
@@ -390,7 +474,9 @@ mod tests {
         let command = Batch::augment_args(clap::Command::new("batch").no_binary_name(true));
         let matches = command.get_matches_from(arguments);
         let batch = <Batch as clap::FromArgMatches>::from_arg_matches(&matches).unwrap();
-        Jobs::of(&batch).map(|jobs| jobs.jobs)
+        let rows = Rows::of(&batch)?;
+        check_outputs(&rows, &batch)?;
+        Ok(Plan::of(&rows.rows, batch.shard.unwrap_or(Shard::WHOLE)).jobs().collect())
     }
 
     #[test]

@@ -6,6 +6,7 @@ use marraztu_io::LoadError;
 use serde::{Deserialize, Serialize};
 
 use super::dataset::DatasetImage;
+use super::jobs::Job;
 use crate::cli::cameras::CameraFrame;
 use crate::cli::failure::Failure;
 
@@ -120,11 +121,18 @@ pub(super) struct Spent {
     pub(super) encode: Duration,
 }
 
+impl Outcome {
+    /// Returns the result of a job that the end of the batch has prevented.
+    pub(super) fn cancelled(job: Job) -> Self {
+        let result = Err(Fault::Cancelled);
+        Self { job, result, in_sha256: None, spent: Spent::default() }
+    }
+}
+
 /// The result of a job.
 #[derive(Clone, Debug)]
 pub(super) struct Outcome {
-    /// The position of the job among the jobs of this process.
-    pub(super) job: usize,
+    pub(super) job: Job,
     pub(super) result: Result<Drawn, Fault>,
     /// The SHA-256 of the model, if a report needs it and it could be read.
     pub(super) in_sha256: Option<String>,

@@ -3,16 +3,18 @@
 //! Nothing in a report depends on time, threads or the shard, so the reports of shards merge to the
 //! report of a single run, byte for byte. Times go to a separate file.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufRead as _, BufReader, Read as _};
-use std::path::Path;
+use std::iter::Peekable;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
 
-use marraztu_io::{NewFile, SaveError, Sources};
+use marraztu_io::{self as io, NewFile, SaveError, Sources, Spool};
 use serde::{Deserialize, Serialize};
 
-use super::jobs::Job;
-use super::outcome::{Drawn, Fault, FileSum, Outcome, Spent, Status};
+use super::jobs::{Job, Plan};
+use super::outcome::{Drawn, Fault, FileSum, Outcome, Status};
 use crate::cli::failure::{Failure, usage};
 
 /// The line of a picture.
@@ -145,6 +147,7 @@ const LONGEST: u64 = 1 << 24;
 /// Checks that a report, or a file of times, may be written to `path`: an existing file is one, or
 /// empty, and not an input. Fails if it is another file.
 pub(crate) fn check_report(path: &Path, sources: &Sources) -> Result<(), Failure> {
+    io::check_scheme(path)?;
     sources.spare(path)?;
     // Writing refuses what is not a file.
     if !path.is_file() {
@@ -174,41 +177,52 @@ pub(crate) fn begin(path: &Path) -> Result<NewFile, SaveError> {
     NewFile::begin(path)
 }
 
-/// Collects outcomes, and writes them in the order of the list.
+/// Lines that wait for earlier ones in memory. More of them wait in a file.
+const MOST_WAITING: usize = 1024;
+
+/// A line that waits for earlier ones.
 #[derive(Debug)]
+enum Waiting {
+    Here(Vec<u8>),
+    InFile(Range<u64>),
+}
+
+/// A report that is being written, in the order of the list.
+struct OpenReport {
+    file: NewFile,
+    folder: PathBuf,
+    /// The positions of the jobs that are not written yet.
+    open: Peekable<Box<dyn Iterator<Item = usize>>>,
+    waiting: BTreeMap<usize, Waiting>,
+    spool: Option<Spool>,
+}
+
+/// Collects outcomes, and writes them in the order of the list.
 pub(super) struct Reporter<'a> {
-    jobs: &'a [Job],
+    plan: &'a Plan,
     counts: Counts,
-    report: Option<NewFile>,
+    report: Option<OpenReport>,
     times: Option<NewFile>,
-    /// The jobs that are not written yet, by index in the list, with their positions.
-    open: BTreeSet<(usize, usize)>,
-    /// The lines that wait for earlier ones.
-    waiting: BTreeMap<usize, Vec<u8>>,
 }
 
 impl<'a> Reporter<'a> {
-    /// Begins a report. `all` is the number of jobs in the whole list. Fails if a file cannot be
-    /// created.
+    /// Begins a report. Fails if a file cannot be created.
     pub(super) fn begin(
-        jobs: &'a [Job],
-        all: usize,
+        plan: &'a Plan,
         report: Option<&Path>,
         times: Option<&Path>,
     ) -> Result<Self, SaveError> {
         Ok(Self {
-            jobs,
-            counts: Counts { jobs: all, ..Counts::default() },
-            report: report.map(begin).transpose()?,
+            plan,
+            counts: Counts { jobs: plan.all, ..Counts::default() },
+            report: report.map(|path| OpenReport::begin(plan, path)).transpose()?,
             times: times.map(begin).transpose()?,
-            open: jobs.iter().enumerate().map(|(i, job)| (job.index, i)).collect(),
-            waiting: BTreeMap::new(),
         })
     }
 
     /// Adds the result of a job. Fails if a file cannot be written.
     pub(super) fn add(&mut self, outcome: &Outcome) -> Result<(), SaveError> {
-        let job = &self.jobs[outcome.job];
+        let job = &outcome.job;
         if let (Some(times), false) = (&mut self.times, outcome.result == Err(Fault::Cancelled)) {
             let spent = outcome.spent;
             let [load, draw, encode] = [spent.load, spent.draw, spent.encode]
@@ -218,44 +232,85 @@ impl<'a> Reporter<'a> {
         }
         let text = Line::of(job, outcome);
         self.counts.add(text.status);
-        if self.report.is_some() {
-            self.waiting.insert(job.index, line(&text));
-        } else {
-            self.open.remove(&(job.index, outcome.job));
+        match &mut self.report {
+            Some(report) => report.add(job.position, line(&text)),
+            None => Ok(()),
         }
-        self.write_ready()
-    }
-
-    /// Writes the lines that wait for no other.
-    fn write_ready(&mut self) -> Result<(), SaveError> {
-        let Some(report) = &mut self.report else { return Ok(()) };
-        while let Some((index, _)) = self.open.first() {
-            let Some(line) = self.waiting.remove(index) else { break };
-            report.push(&line)?;
-            self.open.pop_first();
-        }
-        Ok(())
     }
 
     /// Completes the report: jobs without a result are cancelled. Fails if a file cannot be
     /// written.
     pub(super) fn finish(mut self) -> Result<Counts, SaveError> {
-        let cancelled: Vec<usize> = self.open.iter().map(|(_, job)| *job).collect();
-        for job in cancelled {
-            if !self.waiting.contains_key(&self.jobs[job].index) {
-                let result = Err(Fault::Cancelled);
-                let spent = Spent::default();
-                self.add(&Outcome { job, result, in_sha256: None, spent })?;
-            }
-        }
-        let counts = self.counts;
-        if let Some(mut report) = self.report.take() {
-            report.push(&line(&Summary { summary: counts }))?;
-            report.finish()?;
+        let results = self.counts.done + self.counts.missing();
+        self.counts.cancelled += self.plan.len() - results;
+        let summary = line(&Summary { summary: self.counts });
+        if let Some(report) = self.report.take() {
+            report.finish(self.plan, &summary)?;
         }
         if let Some(times) = self.times.take() {
             times.finish()?;
         }
-        Ok(counts)
+        Ok(self.counts)
+    }
+}
+
+impl OpenReport {
+    fn begin(plan: &Plan, path: &Path) -> Result<Self, SaveError> {
+        let open: Box<dyn Iterator<Item = usize>> = Box::new(plan.in_list_order());
+        let folder = match path.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
+            _ => PathBuf::from("."),
+        };
+        let (waiting, spool) = (BTreeMap::new(), None);
+        Ok(Self { file: begin(path)?, folder, open: open.peekable(), waiting, spool })
+    }
+
+    /// Writes the line of the job at a position, and the ones that wait for it; or lets it wait.
+    fn add(&mut self, position: usize, line: Vec<u8>) -> Result<(), SaveError> {
+        if self.open.peek() != Some(&position) {
+            let waiting = match self.waiting.len() {
+                0..MOST_WAITING => Waiting::Here(line),
+                _ => Waiting::InFile(self.spool()?.push(&line)?),
+            };
+            self.waiting.insert(position, waiting);
+            return Ok(());
+        }
+        self.open.next();
+        self.file.push(&line)?;
+        while let Some(waiting) = self.open.peek().and_then(|next| self.waiting.remove(next)) {
+            self.open.next();
+            self.write(waiting)?;
+        }
+        Ok(())
+    }
+
+    fn spool(&mut self) -> Result<&mut Spool, SaveError> {
+        let spool = match self.spool.take() {
+            Some(spool) => spool,
+            None => Spool::begin(&self.folder)?,
+        };
+        Ok(self.spool.insert(spool))
+    }
+
+    fn write(&mut self, waiting: Waiting) -> Result<(), SaveError> {
+        let line = match waiting {
+            Waiting::Here(line) => line,
+            Waiting::InFile(place) => self.spool()?.get(&place)?,
+        };
+        self.file.push(&line)
+    }
+
+    /// Writes the other lines and the summary. Jobs without a line are cancelled.
+    fn finish(mut self, plan: &Plan, summary: &[u8]) -> Result<(), SaveError> {
+        while let Some(position) = self.open.next() {
+            if let Some(waiting) = self.waiting.remove(&position) {
+                self.write(waiting)?;
+            } else if let Some(job) = plan.job(position) {
+                let outcome = Outcome::cancelled(job);
+                self.file.push(&line(&Line::of(&outcome.job, &outcome)))?;
+            }
+        }
+        self.file.push(summary)?;
+        self.file.finish()
     }
 }

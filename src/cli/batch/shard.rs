@@ -3,7 +3,6 @@
 //! All pictures of one model belong to one shard, so it is loaded once. Models are sorted by a hash
 //! of their path and dealt like cards, which spreads neighbours in the list, often of equal cost.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 
 use sha2::{Digest as _, Sha256};
@@ -34,19 +33,17 @@ impl Shard {
     /// The whole list.
     pub(super) const WHOLE: Self = Self { index: 0, count: 1 };
 
-    /// Returns the shard of each model, by its path.
-    pub(super) fn of_files<'a>(
-        count: usize,
-        files: impl Iterator<Item = &'a Path>,
-    ) -> BTreeMap<&'a Path, usize> {
-        let key = |file: &'a Path| {
-            let bytes = file.as_os_str().as_encoded_bytes();
-            (Sha256::digest(bytes).to_vec(), file)
+    /// Returns the numbers of the files that are in this shard, in any order. Equal files are in
+    /// one shard.
+    pub(super) fn of_files<'a>(self, files: impl Iterator<Item = &'a Path>) -> Vec<usize> {
+        let key = |file: &Path| -> [u8; 32] {
+            Sha256::digest(file.as_os_str().as_encoded_bytes()).into()
         };
-        let mut keys: Vec<(Vec<u8>, &Path)> = files.map(key).collect();
-        keys.sort();
-        keys.dedup();
-        keys.into_iter().enumerate().map(|(i, (_, file))| (file, i % count)).collect()
+        let mut keys: Vec<([u8; 32], usize)> =
+            files.enumerate().map(|(number, file)| (key(file), number)).collect();
+        keys.sort_unstable();
+        let models = keys.chunk_by(|a, b| a.0 == b.0).skip(self.index).step_by(self.count);
+        models.flatten().map(|(_, number)| *number).collect()
     }
 }
 
@@ -104,13 +101,16 @@ mod tests {
     fn every_model_is_in_one_shard_and_shards_have_equal_sizes() {
         let names: Vec<String> = (0..100).map(|i| format!("models/{i}.obj")).collect();
         for count in (1..=17).chain([64]) {
-            let twice = names.iter().chain(&names).map(Path::new);
-            let shards = Shard::of_files(count, twice);
-            assert_eq!(shards.len(), 100);
-            for shard in 0..count {
-                let size = shards.values().filter(|other| **other == shard).count();
-                assert!(size.abs_diff(100 / count) <= 1, "{shard}/{count}: {size}");
+            let mut seen = [0; 200];
+            for index in 0..count {
+                let twice = names.iter().chain(&names).map(Path::new);
+                let files = Shard { index, count }.of_files(twice);
+                let size = files.len() / 2;
+                assert!(size.abs_diff(100 / count) <= 1, "{index}/{count}: {size}");
+                assert!(files.iter().all(|file| files.contains(&((file + 100) % 200))));
+                files.into_iter().for_each(|file| seen[file] += 1);
             }
+            assert_eq!(seen, [1; 200]);
         }
     }
 

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use marraztu::plots::{SheetCell, contact_sheet};
 use marraztu_io::{self as io, PICTURE_FORMATS, PictureFormat};
 
-use super::jobs::Job;
+use super::jobs::{Job, Plan};
 use super::template::stem;
 use crate::cli::failure::Failure;
 
@@ -32,12 +32,13 @@ impl Grid {
 
 /// Checks that sheets replace no other file, and that they can show the files of the jobs. Fails if
 /// a file with the name of a sheet is none, or a job writes no picture.
-pub(super) fn check_sheets(grid: Grid, folder: &Path, jobs: &[Job]) -> Result<(), Failure> {
-    if let Some(job) = jobs.iter().find(|job| PictureFormat::of(job.out()).is_err()) {
+pub(super) fn check_sheets(grid: Grid, folder: &Path, plan: &Plan) -> Result<(), Failure> {
+    io::check_scheme(folder)?;
+    if let Some(job) = plan.jobs().find(|job| PictureFormat::of(job.out()).is_err()) {
         let out = job.out().display();
         return Err(Failure::Usage(format!("--sheet shows pictures, and {out} is none")));
     }
-    grid.files(folder, jobs.len()).try_for_each(|path| check_sheet(&path))
+    grid.files(folder, plan.len()).try_for_each(|path| check_sheet(&path))
 }
 
 fn check_sheet(path: &Path) -> Result<(), Failure> {
@@ -61,19 +62,21 @@ pub(super) fn grid(text: &str) -> Result<Grid, String> {
     }
 }
 
-/// Writes the sheets of these jobs, in their order, to numbered files in a folder, as long as
-/// `wanted` returns true. Fails if a picture cannot be read, or a sheet cannot be written.
+/// Writes the sheets of the jobs at these positions, in their order, to numbered files in a folder,
+/// as long as `wanted` returns true. Fails if a picture cannot be read, or a sheet cannot be
+/// written.
 pub(super) fn write_sheets(
     grid: Grid,
     folder: &Path,
-    jobs: &[&Job],
+    (plan, jobs): (&Plan, &[usize]),
     wanted: &dyn Fn() -> bool,
 ) -> Result<(), Failure> {
     let failed = |error| Failure::Write(folder.to_owned(), error);
     std::fs::create_dir_all(folder).map_err(failed)?;
     let pages = jobs.chunks(grid.columns * grid.rows);
     for (path, jobs) in grid.files(folder, jobs.len()).zip(pages).take_while(|_| wanted()) {
-        let cells = jobs.iter().map(|job| cell(job)).collect::<Result<Vec<_>, _>>()?;
+        let cells = jobs.iter().filter_map(|position| plan.job(*position)).map(|job| cell(&job));
+        let cells = cells.collect::<Result<Vec<_>, _>>()?;
         check_sheet(&path)?;
         let sheet = contact_sheet(&cells, grid.columns, &[])?;
         let png = io::encode_stamped(&PICTURE_FORMATS[0], &sheet, STAMP);

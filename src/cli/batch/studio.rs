@@ -11,24 +11,26 @@ use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::mpsc::Sender;
+use std::sync::mpsc::SyncSender;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use marraztu_core::accuracy::Shot;
 use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::base::threads::{self, Caller};
 use marraztu_io::{self as io, Progress};
 use marraztu_render::{LayerNames, Layers, Renderer, plan_frame, without_ground_while};
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use rayon::ThreadPool;
 
 use super::Batch;
-use super::cache::StageCache;
+use super::cache::{LoadedStage, StageCache};
 use super::dataset::{self, Dataset, DatasetImage};
-use super::digest::{Stamper, hash_of, hash_of_file};
-use super::jobs::{Job, Row};
+use super::digest::{SourceHash, Stamper, hash_of, hash_of_file};
+use super::jobs::{Job, Plan};
 use super::options::PictureOptions;
 use super::outcome::{Drawn, Fault, FileSum, Outcome, Spent};
 use super::report::shown;
+use super::rows::Row;
 use crate::cli::cameras::CameraFrame;
 use crate::cli::failure::Failure;
 use crate::cli::layers::{LayerContent, LayerFile};
@@ -45,7 +47,7 @@ const AHEAD: usize = 2;
 /// The state that the threads of a batch share.
 #[derive(Debug)]
 pub(super) struct Studio {
-    jobs: Vec<Job>,
+    plan: Plan,
     arguments: Arc<Batch>,
     /// The position of the next job.
     next: AtomicUsize,
@@ -65,13 +67,15 @@ struct Attempt<'a> {
     studio: &'a Studio,
     job: &'a Job,
     until: Option<Instant>,
+    /// The hashes of the loaded files.
+    source: Option<SourceHash>,
     spent: Spent,
 }
 
 impl Studio {
-    pub(super) fn new(jobs: Vec<Job>, arguments: Arc<Batch>) -> Self {
+    pub(super) fn new(plan: Plan, arguments: Arc<Batch>) -> Self {
         Self {
-            jobs,
+            plan,
             next: AtomicUsize::new(0),
             stopped: AtomicBool::new(false),
             cache: StageCache::new(arguments.memory),
@@ -83,9 +87,9 @@ impl Studio {
         }
     }
 
-    /// Returns the jobs, in the order of drawing.
-    pub(super) fn jobs(&self) -> &[Job] {
-        &self.jobs
+    /// Returns the pictures to draw.
+    pub(super) const fn plan(&self) -> &Plan {
+        &self.plan
     }
 
     /// Returns whether a report needs hashes and findings.
@@ -122,59 +126,73 @@ impl Studio {
     }
 
     /// Draws jobs on this thread until none is left, and sends their results.
-    pub(super) fn work(&self, results: &Sender<Outcome>) {
-        // If the pool cannot be built, drawing uses the pool of all threads.
-        let _pool = ThreadPoolBuilder::new().num_threads(1).use_current_thread().build();
+    pub(super) fn work(&self, results: &SyncSender<Outcome>) {
+        // A pool of this thread alone: it is in no other, so it can join.
+        let _pool = threads::pool(1, Caller::Joins, "draw");
         let mut renderer = Renderer::default();
         while !self.is_stopped() {
             let number = self.next.fetch_add(1, Ordering::Relaxed);
-            let Some(job) = self.jobs.get(number) else { return };
-            let until = self.end();
-            let mut attempt = Attempt { studio: self, job, until, spent: Spent::default() };
+            let Some(job) = self.plan.job(number) else { return };
+            let (until, spent) = (self.end(), Spent::default());
+            let mut attempt = Attempt { studio: self, job: &job, until, source: None, spent };
             let result = guarded(|| attempt.picture(&mut renderer)).unwrap_or_else(|panic| {
                 renderer = Renderer::default();
                 Err(Fault::Program(panic))
             });
-            let model = || guarded(|| self.stamper.model(&job.row.file)).ok().flatten();
+            let Attempt { source, spent, .. } = attempt;
+            if result.as_ref().is_err_and(|fault| *fault != Fault::Cancelled) {
+                self.remove_earlier(&job);
+            }
+            let known = || guarded(|| self.stamper.known(&job.row)).ok().flatten();
             let wanted = self.reports() && result != Err(Fault::Cancelled);
-            let in_sha256 = if wanted { model().map(|model| model.file) } else { None };
-            let outcome = Outcome { job: number, result, in_sha256, spent: attempt.spent };
-            if results.send(outcome).is_err() {
+            let source = if wanted { source.or_else(known) } else { None };
+            let in_sha256 = source.map(|source| source.file);
+            if results.send(Outcome { job, result, in_sha256, spent }).is_err() {
                 return;
             }
+        }
+    }
+
+    /// Removes the files of an earlier run for a picture of a data set that could not be drawn: its
+    /// tables do not describe them.
+    fn remove_earlier(&self, job: &Job) {
+        if self.arguments.dataset.is_some() {
+            let own = job.files.iter().filter(|file| io::read_stamp(&file.path).is_some());
+            own.for_each(|file| _ = std::fs::remove_file(&file.path));
         }
     }
 
     /// Reads the models of the next jobs until none is left.
     pub(super) fn read_ahead(&self) {
         let mut at = 0;
-        while let (Some(job), false) = (self.jobs.get(at), self.is_stopped()) {
-            let file = &job.row.file;
-            let group = self.jobs[at..].iter().take_while(|other| other.row.file == *file).count();
+        // The ends of the models that are read and not drawn.
+        let mut ahead: Vec<usize> = Vec::new();
+        while let (Some(job), false) = (self.plan.job(at), self.is_stopped()) {
+            let (file, end) = (&job.row.file, self.plan.end_of_model(at));
             // Wait until the jobs before are nearly done.
-            let models_between = |next: usize| {
-                let between = self.jobs.get(next..at).unwrap_or_default();
-                between.chunk_by(|a, b| a.row.file == b.row.file).count()
-            };
-            while models_between(self.next.load(Ordering::Relaxed)) >= AHEAD
-                || (at > self.next.load(Ordering::Relaxed)
-                    && !self.cache.has_room_for(file, AHEAD + 1))
-            {
+            loop {
+                let next = self.next.load(Ordering::Relaxed);
+                ahead.retain(|end| *end > next);
+                let is_full = at > next && !self.cache.has_room_for(file, AHEAD + 1);
+                if ahead.len() < AHEAD && !is_full {
+                    break;
+                }
                 if self.is_stopped() {
                     return;
                 }
                 std::thread::sleep(Duration::from_millis(2));
             }
-            if self.next.load(Ordering::Relaxed) < at + group && !self.is_up_to_date(job) {
+            if self.next.load(Ordering::Relaxed) < end && !self.is_up_to_date(&job) {
                 // A panic is reported by the job that meets it again.
                 let _ = guarded(|| self.scene(&job.row, self.end()));
             }
-            at += group;
+            ahead.push(end);
+            at = end;
         }
     }
 
     /// Returns the scene of a row, without a camera.
-    fn scene(&self, row: &Row, until: Option<Instant>) -> Result<Arc<Stage>, Fault> {
+    fn scene(&self, row: &Row, until: Option<Instant>) -> Result<Arc<LoadedStage>, Fault> {
         let progress = Progress::new();
         let lock = || self.reading.lock().unwrap_or_else(PoisonError::into_inner);
         lock().push((until, progress.clone()));
@@ -200,20 +218,22 @@ impl Studio {
         let layers = &job.files[1..];
         let is_whole =
             layers.iter().all(|file| io::read_stamp(&file.path).as_ref() == Some(&found));
-        (is_whole && Some(hash) == self.stamper.stamp(job)).then_some(found)
+        let source = if is_whole { self.stamper.known(&job.row) } else { None };
+        let stamp = source.map(|source| self.stamper.stamp(job, &source));
+        (Some(hash) == stamp).then_some(found)
     }
 
     /// Returns the pool for a large picture, as soon as it is free; `None` for a small one.
-    fn pool_for(&self, size: Size) -> Result<Option<MutexGuard<'_, Option<ThreadPool>>>, Fault> {
+    fn pool_for(&self, size: Size) -> Option<MutexGuard<'_, Option<ThreadPool>>> {
         if size.area() <= LARGE || self.arguments.threads() == 1 {
-            return Ok(None);
+            return None;
         }
         let mut large = self.large.lock().unwrap_or_else(PoisonError::into_inner);
         if large.is_none() {
-            let pool = ThreadPoolBuilder::new().num_threads(self.arguments.threads()).build();
-            *large = Some(pool.map_err(|error| Fault::Program(error.to_string()))?);
+            // Without a further thread, this one draws.
+            *large = threads::pool(self.arguments.threads(), Caller::Waits, "large").ok();
         }
-        Ok(Some(large))
+        Some(large)
     }
 
     /// Creates a folder, and removes the leftovers of killed processes from it.
@@ -290,13 +310,16 @@ impl Attempt<'_> {
             io::check_replaced(&path).map_err(|error| output(&error))?;
             io::save_encoded(&path, &content).map_err(|error| output(&error))?;
         }
+        if dataset == Dataset::Bop {
+            dataset::remove_masks(job, image.objects.len());
+        }
         Ok(Some(Box::new(image)))
     }
 
     /// Describes the camera, if the picture has layers.
     fn camera(&self, stage: &Stage) -> Option<Box<CameraFrame>> {
         let job = self.job;
-        let options = &job.row.parsed.options.layers;
+        let options = &job.options().layers;
         if !options.are_given() {
             return None;
         }
@@ -324,7 +347,7 @@ impl Attempt<'_> {
             drawn.files = sums.collect::<Result<_, _>>()?;
         }
         // The cameras of a picture with layers are written again: another shard may have drawn it.
-        let has_layers = self.job.row.parsed.options.layers.are_given();
+        let has_layers = self.job.options().layers.are_given();
         if (reports && has_findings) || has_layers {
             let (stage, findings) = self.stage()?;
             drawn.camera = self.camera(&stage);
@@ -339,8 +362,10 @@ impl Attempt<'_> {
         let (row, job) = (&self.job.row, self.job);
         let loaded = self.studio.scene(row, self.until);
         self.spent.load += begin.elapsed();
-        let mut stage = Stage::clone(&*loaded?);
-        let options = &row.parsed.options;
+        let loaded = loaded?;
+        self.source = Some(loaded.source.clone());
+        let mut stage = loaded.stage.clone();
+        let options = job.options();
         let failed = |failure: Failure| Fault::of(&failure);
         let aim = job.camera().aim.at(job.size());
         look(&mut stage, &options.scene.seeing, &aim).map_err(failed)?;
@@ -362,12 +387,12 @@ impl Attempt<'_> {
     ) -> Result<Vec<Vec<u8>>, Fault> {
         let (studio, job) = (self.studio, self.job);
         let begin = Instant::now();
-        let pool = studio.pool_for(job.size())?;
+        let pool = studio.pool_for(job.size());
         // Waiting for other pictures does not count.
         let until = self.until.map(|until| until + begin.elapsed());
         let begin = Instant::now();
         let shot = stage.shot(job.size());
-        let options = &job.row.parsed.options;
+        let options = &job.options();
         let layers = options.layers.set();
         if !layers.is_empty() {
             layers.check_memory(shot.size).map_err(|_full| Fault::Program(NO_MEMORY.to_owned()))?;
@@ -387,8 +412,8 @@ impl Attempt<'_> {
         };
         let (color, numbers) = picture.filter(|_| !is_late()).ok_or_else(stopped)?;
         let begin = Instant::now();
-        let hash = studio.stamper.stamp(job);
-        let hash = hash.ok_or_else(|| Fault::Input("the model has disappeared".to_owned()))?;
+        let source = self.source.as_ref().expect("the files are hashed before they are loaded");
+        let hash = studio.stamper.stamp(job, source);
         // The number of findings tells a later run whether its report needs the model.
         let stamp = format!("{hash} {findings}");
         let content =

@@ -7,21 +7,43 @@ use crate::cli::values;
 /// The largest width of a number.
 const MOST_WIDTH: usize = 20;
 
+/// What the value of a field depends on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Scope {
+    /// The format alone.
+    Batch,
+    /// The model.
+    Model,
+    /// The view and the layer.
+    Picture,
+    /// The number of the picture in the whole list.
+    List,
+}
+
 /// A field of a template. A number may have a width.
 struct Field {
     name: &'static str,
+    scope: Scope,
     is_number: bool,
     /// Returns its value with at least this number of digits.
     value: fn(&Fields<'_>, usize) -> String,
 }
 
 impl Field {
-    const fn text(name: &'static str, value: fn(&Fields<'_>, usize) -> String) -> Self {
-        Self { name, is_number: false, value }
+    const fn text(
+        name: &'static str,
+        scope: Scope,
+        value: fn(&Fields<'_>, usize) -> String,
+    ) -> Self {
+        Self { name, scope, is_number: false, value }
     }
 
-    const fn number(name: &'static str, value: fn(&Fields<'_>, usize) -> String) -> Self {
-        Self { name, is_number: true, value }
+    const fn number(
+        name: &'static str,
+        scope: Scope,
+        value: fn(&Fields<'_>, usize) -> String,
+    ) -> Self {
+        Self { name, scope, is_number: true, value }
     }
 }
 
@@ -29,14 +51,14 @@ impl Field {
 /// with its extension; the number of the picture in the whole list and of the view, from 0; the
 /// names of the view and the layer; the extension of the format.
 const FIELDS: [Field; 8] = [
-    Field::text("dir", |fields, _| dir(fields.file)),
-    Field::text("stem", |fields, _| stem(fields.file)),
-    Field::text("name", |fields, _| name(fields.file)),
-    Field::number("index", |fields, width| format!("{:0width$}", fields.index)),
-    Field::number("view", |fields, width| format!("{:0width$}", fields.view)),
-    Field::text("view_name", |fields, _| fields.view_name.to_owned()),
-    Field::text("layer", |fields, _| fields.layer.to_owned()),
-    Field::text("ext", |fields, _| fields.ext.to_owned()),
+    Field::text("dir", Scope::Model, |fields, _| dir(fields.file)),
+    Field::text("stem", Scope::Model, |fields, _| stem(fields.file)),
+    Field::text("name", Scope::Model, |fields, _| name(fields.file)),
+    Field::number("index", Scope::List, |fields, width| format!("{:0width$}", fields.index)),
+    Field::number("view", Scope::Picture, |fields, width| format!("{:0width$}", fields.view)),
+    Field::text("view_name", Scope::Picture, |fields, _| fields.view_name.to_owned()),
+    Field::text("layer", Scope::Picture, |fields, _| fields.layer.to_owned()),
+    Field::text("ext", Scope::Batch, |fields, _| fields.ext.to_owned()),
 ];
 
 /// A part of a template.
@@ -104,14 +126,70 @@ impl Template {
 
     /// Returns the file of a picture.
     pub(super) fn path(&self, fields: &Fields<'_>) -> PathBuf {
-        let value = |piece: &Piece| match piece {
-            Piece::Text(text) => text.clone(),
-            Piece::Field(field, width) => (FIELDS[*field].value)(fields, *width),
-        };
-        let path: String = self.0.iter().map(value).collect();
         // `a//b` and `a/./b` are `a/b`.
-        Path::new(&path).components().collect()
+        Path::new(&text(&self.0, fields)).components().collect()
     }
+
+    /// Returns whether the files of all pictures have the same extension.
+    pub(super) fn fixes_extension(&self) -> bool {
+        let fixed = self.0.iter().rposition(|piece| piece.scope() != Scope::Batch);
+        let end = &self.0[fixed.map_or(0, |last| last + 1)..];
+        let is_dotted = |piece: &Piece| matches!(piece, Piece::Text(text) if text.contains('.'));
+        end.iter().any(is_dotted)
+    }
+
+    /// Returns whether the number of a picture can be read from the name of its file: the number
+    /// is between a part that all names share and a character that is not a digit.
+    pub(super) fn shows_index(&self) -> bool {
+        let is_fixed = |pieces: &[Piece]| pieces.iter().all(|it| it.scope() == Scope::Batch);
+        let edge = |piece: Option<&Piece>, sign: fn(&str) -> Option<char>| match piece {
+            None => true,
+            Some(Piece::Text(text)) => sign(text).is_some_and(|sign| !sign.is_ascii_digit()),
+            Some(Piece::Field(..)) => false,
+        };
+        let is_read = |at: usize| {
+            let (before, after) = (&self.0[..at], &self.0[at + 1..]);
+            let from_left = is_fixed(before) && edge(after.first(), |text| text.chars().next());
+            let from_right = is_fixed(after) && edge(before.last(), |text| text.chars().last());
+            from_left || from_right
+        };
+        (0..self.0.len()).any(|at| self.0[at].scope() == Scope::List && is_read(at))
+    }
+
+    /// Splits the file of a picture into the texts before, inside and after the fields that depend
+    /// on the view and the layer. `None` if one depends on the list, or one between on the model.
+    pub(super) fn split(&self, fields: &Fields<'_>) -> Option<[String; 3]> {
+        let is_picture = |piece: &Piece| piece.scope() == Scope::Picture;
+        if self.0.iter().any(|piece| piece.scope() == Scope::List) {
+            return None;
+        }
+        let end = self.0.len();
+        let first = self.0.iter().position(is_picture).unwrap_or(end);
+        let last = self.0.iter().rposition(is_picture).map_or(end, |last| last + 1);
+        let parts = [&self.0[..first], &self.0[first..last], &self.0[last..]];
+        if parts[1].iter().any(|piece| piece.scope() == Scope::Model) {
+            return None;
+        }
+        Some(parts.map(|pieces| text(pieces, fields)))
+    }
+}
+
+impl Piece {
+    fn scope(&self) -> Scope {
+        match self {
+            Self::Text(_) => Scope::Batch,
+            Self::Field(field, _) => FIELDS[*field].scope,
+        }
+    }
+}
+
+/// Returns the text of pieces.
+fn text(pieces: &[Piece], fields: &Fields<'_>) -> String {
+    let value = |piece: &Piece| match piece {
+        Piece::Text(text) => text.clone(),
+        Piece::Field(field, width) => (FIELDS[*field].value)(fields, *width),
+    };
+    pieces.iter().map(value).collect()
 }
 
 fn field(text: &str) -> Result<Piece, String> {
@@ -186,6 +264,28 @@ mod tests {
         ] {
             let named = Template::of_views(count, by_layer);
             assert_eq!(named, Template::parse(template).unwrap());
+        }
+    }
+
+    #[test]
+    fn a_template_shows_the_number_of_a_picture_only_between_marks() {
+        for (template, shows) in [
+            ("{index:06}.png", true),
+            ("out/{stem}/{index}.{ext}", true),
+            ("{index}-{stem}-{view}.png", true),
+            ("out/{stem}-{index}.png", true),
+            ("{stem}{index}.png", false),
+            ("{index}{view}.png", false),
+            ("{index}1.png", false),
+            ("{stem}-{index}-{view}.png", false),
+            ("{stem}-{view:03}.png", false),
+        ] {
+            assert_eq!(Template::parse(template).unwrap().shows_index(), shows, "{template}");
+        }
+        for (template, fixes) in
+            [("{stem}.png", true), ("{stem}.{ext}", true), ("{stem}", false), ("a.b/{name}", false)]
+        {
+            assert_eq!(Template::parse(template).unwrap().fixes_extension(), fixes, "{template}");
         }
     }
 
