@@ -13,9 +13,10 @@ use marraztu_core::accuracy::{Arithmetic, Samples, Settings, Shot};
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::Size;
 use marraztu_core::base::math::rotation;
+use marraztu_core::edit::items;
 use marraztu_core::scene::{
-    ItemId, MaterialChoice, MeshSource, Model, NONE, Normals, ObjectId, Part, PresetId, Projection,
-    Scene, Sides, SourceCorner, View, dvec3,
+    Command, Intrinsics, Item, ItemId, Lens, MaterialChoice, MeshSource, Model, NONE, Normals,
+    ObjectId, Part, PresetId, Projection, Scene, Sides, SourceCorner, View, dvec3,
 };
 use marraztu_io::{self as io, Progress};
 use marraztu_lab::pixel;
@@ -52,6 +53,13 @@ fn shots() -> Vec<(String, Shot)> {
             let view = View { projection, normals, ..view.clone() };
             shots.push((format!("{projection:?} {normals:?}"), shot(&own, &view)));
         }
+        let view = View { projection, ..view.clone() };
+        let mut scene = own.clone();
+        let mut camera = scene.selected_camera(&view).clone();
+        camera.lens = Lens { shift: [0.21, -0.34], pixel_aspect: 1.3, ..camera.lens };
+        let command = Command::Replace(Item::Camera(view.camera, Box::new(camera)));
+        command.apply(&mut scene).unwrap();
+        shots.push((format!("{projection:?} shifted"), shot(&scene, &view)));
     }
     shots
 }
@@ -124,8 +132,8 @@ fn depths_lead_through_the_camera_to_the_polygon_that_the_ids_name() {
             // 1/256 pixel, and units in the last place of the f32.
             let depth = f64::from(*depth);
             let pixel = match camera.projection {
-                Projection::Perspective => depth.abs() / camera.focal,
-                Projection::Orthographic => 1.0 / camera.focal,
+                Projection::Perspective => depth.abs() / camera.intrinsics.focal.min_element(),
+                Projection::Orthographic => 1.0 / camera.intrinsics.focal.min_element(),
             };
             let point = camera.point(centre(i), depth);
             let reach = point.length().max(depth.abs());
@@ -191,7 +199,8 @@ fn ids_name_what_the_editor_picks_and_normals_are_those_that_light_uses() {
                 assert!(normal.distance(point.normal) < 1e-6, "{name} {x},{y}: {normal} {point:?}");
                 // Light is computed on the ray through the centre, at the depth of the triangle.
                 let position = vectors_at(&layers, Layer::Position, i);
-                let pixel = point.distance.max(1.0) / PictureCamera::of(&shot).focal;
+                let pixel = point.distance.max(1.0)
+                    / PictureCamera::of(&shot).intrinsics.focal.min_element();
                 let reach = pixel / 256.0 + f64::from(f32::EPSILON) * position.length();
                 let off = position.distance(point.position);
                 assert!(off <= reach, "{name} {x},{y}: {off} of {reach}");
@@ -270,7 +279,7 @@ fn the_matrices_of_a_camera_agree_with_each_other() {
                 Projection::Perspective => p / p.z,
                 Projection::Orthographic => DVec3::new(p.x, p.y, 1.0),
             };
-            let rows = camera.intrinsics().map(|row| DVec3::from_array(row).dot(p));
+            let rows = camera.k().map(|row| DVec3::from_array(row).dot(p));
             assert!(DVec2::new(rows[0], rows[1]).distance(position) < 1e-7, "{name}: {rows:?}");
             // Normalised device coordinates, from -1 to 1.
             let clip = camera.ndc_from_world() * point.extend(1.0);
@@ -283,7 +292,53 @@ fn the_matrices_of_a_camera_agree_with_each_other() {
     // A half-angle of 22.5 degrees across 110 rows: 55 / tan 22.5 = 55 (1 + sqrt 2).
     let (scene, view) = scene(&[]);
     let camera = PictureCamera::of(&shot(&scene, &view));
-    assert!((camera.focal - 55.0 * (1.0 + 2.0_f64.sqrt())).abs() < 1e-9, "{}", camera.focal);
+    let focal = camera.intrinsics.focal;
+    assert!((focal - 55.0 * (1.0 + 2.0_f64.sqrt())).length() < 1e-9, "{focal}");
+}
+
+/// Returns a shot of the pixels from a corner on of a larger picture.
+fn crop(shot: &Shot, corner: DVec2, size: Size) -> Shot {
+    let (mut crop, projection) = (shot.clone(), shot.view.projection);
+    let mut camera = crop.scene.selected_camera(&crop.view).clone();
+    let whole = camera.lens.intrinsics(projection, shot.size);
+    let principal_point = whole.principal_point - corner;
+    let intrinsics = Intrinsics { principal_point, size, ..whole };
+    camera.lens = camera.lens.with_intrinsics(projection, &intrinsics);
+    let command = Command::Replace(Item::Camera(crop.view.camera, Box::new(camera)));
+    command.apply(&mut crop.scene).unwrap();
+    crop.size = size;
+    crop
+}
+
+#[test]
+fn a_picture_off_the_axis_is_a_part_of_a_larger_one() {
+    let (corner, size) = ([97, 31], Size::new(48, 64));
+    let mut renderer = Renderer::default();
+    for (name, mut shot) in shots() {
+        let scene = &shot.scene;
+        let lights = scene.lights.ids().map(|id| {
+            items::change_light(scene, id, |light| light.shadows = light.can_cast_shadows())
+        });
+        for command in lights.collect::<Vec<_>>() {
+            command.unwrap().apply(&mut shot.scene).unwrap();
+        }
+        for samples in [Samples::One, Samples::Four] {
+            shot.settings.samples = samples;
+            #[expect(clippy::cast_precision_loss, reason = "a small picture")]
+            let crop = crop(&shot, DVec2::new(corner[0] as f64, corner[1] as f64), size);
+            let whole = renderer.render(&plan_frame(&shot)).clone();
+            let part = renderer.render(&plan_frame(&crop));
+            let (mut differing, mut most) = (0, 0);
+            for (y, x) in (0..size.height).flat_map(|y| (0..size.width).map(move |x| (y, x))) {
+                let [a, b] = [part.pixel(x, y), whole.pixel(x + corner[0], y + corner[1])];
+                let by = (0..4).map(|i| a[i].abs_diff(b[i])).max().unwrap();
+                // Arithmetic in f32 differs by a step or two.
+                differing += usize::from(by > 2);
+                most = most.max(by);
+            }
+            assert!(differing <= 3, "{name} {samples:?}: {differing} pixels, {most}");
+        }
+    }
 }
 
 /// A polygon of four corners with these normals.

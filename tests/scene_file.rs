@@ -107,7 +107,15 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         model: scene.objects.get(ObjectId(1)).unwrap().model.clone(),
         material: MaterialChoice::Preset(PresetId::EMERALD),
         pose: Tracked::new(pose),
-        lens: Lens { half_angle: 30.0, near: 0.1, far: 70.0, half_size: 3.0, ..Lens::default() },
+        lens: Lens {
+            half_angle: 30.0,
+            near: 0.1,
+            far: 70.0,
+            half_size: 3.0,
+            shift: [a.clamp(-1e5, 1e5), -1.0 / 3.0],
+            pixel_aspect: 572.4 / 573.6,
+            ..Lens::default()
+        },
     };
     insert(&mut scene, 0, Item::Camera(CameraId(22), Box::new(camera)));
 
@@ -373,6 +381,8 @@ fn invalid_items_of_a_scene_are_refused_by_name() {
             "\"camera 1\": its position has a number that is infinite or NaN",
         ),
         ("half_angle: 22.5", "half_angle: 90.0", "the lens needs an angle between 0 and 90"),
+        ("half_angle: 22.5", "half_angle: 22.5, pixel_aspect: -1.0", "a pixel aspect from 0.001"),
+        ("half_angle: 22.5", "half_angle: 22.5, shift: (NaN, 0.0)", "the lens needs an angle"),
         ("slot: 1,", "slot: 0,", "another light has slot 0 already"),
         (
             "direction: (0.0, -1.0, 0.0)",

@@ -7,14 +7,14 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use glam::DMat4;
+use glam::{DMat4, DVec2};
 use marraztu_core::accuracy::{self, Settings};
 use marraztu_core::base::color::Color;
 use marraztu_core::base::image::Size;
 use marraztu_core::edit::{framing, items, lighting, selection};
 use marraztu_core::scene::{
-    self as core, Command, Fill, Item, ItemId, LightId, MaterialChoice, Object, ObjectId, Observer,
-    Pose, Projection, Sides, Tracked, View,
+    self as core, Command, Fill, Intrinsics, Item, ItemId, LightId, MaterialChoice, Object,
+    ObjectId, Observer, Pose, Projection, Sides, Tracked, View,
 };
 use marraztu_io as io;
 use pyo3::prelude::*;
@@ -54,9 +54,9 @@ struct State {
 enum Aim {
     /// Everything is framed from these radians to the right of the front, and up.
     From(f64, f64),
-    /// A matrix from camera to world, with the axes of OpenGL. The second value is the tangent of
-    /// half the angle across the shorter side of the picture.
-    Pose(Rows, Option<f64>),
+    /// A matrix from camera to world, with the axes of OpenGL, and the numbers f_x, f_y, c_x and c_y
+    /// of the lens in pixels.
+    Pose(Rows, Option<[f64; 4]>),
 }
 
 /// The properties of an object to change.
@@ -187,7 +187,7 @@ impl State {
 
     /// Returns the scene with this camera, and the view through it. A camera that is given is the
     /// observer, and has its own lens, whatever the view of a file.
-    fn aimed(&mut self, aim: Option<&Aim>) -> Result<(core::Scene, View), Failure> {
+    fn aimed(&mut self, aim: Option<&Aim>, size: Size) -> Result<(core::Scene, View), Failure> {
         let mut view = self.view.clone();
         match aim {
             None => Ok((self.presented()?, view)),
@@ -195,9 +195,9 @@ impl State {
                 view.observer = Observer::Camera;
                 Ok((self.frame(&view, [*right, *up])?, view))
             }
-            Some(Aim::Pose(rows, tangent)) => {
+            Some(Aim::Pose(rows, lens)) => {
                 view.observer = Observer::Camera;
-                if tangent.is_some() {
+                if lens.is_some() {
                     view.projection = Projection::Perspective;
                 }
                 let mut scene = self.presented()?;
@@ -205,8 +205,11 @@ impl State {
                 let invalid =
                     || Failure::value("the pose of a camera is a rotation and a position");
                 let pose = pose.ok_or_else(invalid)?;
-                let half_angle = tangent.map(|tangent| libm::atan(tangent).to_degrees());
-                let command = framing::from_pose(&scene, &view, pose, half_angle);
+                let intrinsics = lens.map(|[fx, fy, cx, cy]| {
+                    let (focal, principal_point) = (DVec2::new(fx, fy), DVec2::new(cx, cy));
+                    (Projection::Perspective, Intrinsics { focal, principal_point, size })
+                });
+                let command = framing::from_pose(&scene, &view, pose, intrinsics);
                 command.apply(&mut scene).map_err(Failure::value)?;
                 Ok((scene, view))
             }
@@ -433,7 +436,7 @@ impl Scene {
         let size = Size::new(side(width)?, side(height)?);
         work(py, 0, |_| {
             let mut state = self.lock()?;
-            let (scene, view) = state.aimed(aim.as_ref())?;
+            let (scene, view) = state.aimed(aim.as_ref(), size)?;
             let settings = values::settings(&state.settings, preset, &choices)?;
             let shot = accuracy::Shot::new(&scene, &view, &settings, size);
             Ok(Shot::new(shot, state.ids.clone()))

@@ -146,7 +146,7 @@ impl Shot {
     fn camera(&self) -> ([[f64; 3]; 3], Rows) {
         let camera = PictureCamera::of(&self.shot);
         let pose = values::rows(camera.world_from_camera(AxesConvention::OpenGl));
-        (camera.intrinsics(), pose)
+        (camera.k(), pose)
     }
 
     /// The names of parts by their number in the layer.

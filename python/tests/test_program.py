@@ -81,9 +81,10 @@ def test_cameras_of_transforms_json_equal_batch(program, assets, tmp_path):
     centre = mesh.bounds.mean(axis=0)
     size = np.ptp(mesh.bounds, axis=0).max()
     camera = mz.Camera.look_at(centre + size * np.array([1, 0.7, 2]), centre)
-    K = [[90.0, 0, 40], [0, 90, 30], [0, 0, 1]]
+    K = [[90.0, 0, 43.5], [0, 85, 27.25], [0, 0, 1]]
     frame = {"transform_matrix": camera.pose().tolist()}
-    cameras = {"fl_x": 90, "fl_y": 90, "w": 80, "h": 60, "cx": 40, "cy": 30, "frames": [frame]}
+    lens = {"fl_x": 90, "fl_y": 85, "w": 80, "h": 60, "cx": 43.5, "cy": 27.25}
+    cameras = {**lens, "frames": [frame]}
     (tmp_path / "cameras.json").write_text(json.dumps(cameras))
     command = [program, "batch", str(assets / "cam.obj"), "--views", str(tmp_path / "cameras.json")]
     command += ["--out", str(tmp_path / "{view}.ppm"), "--quiet"]

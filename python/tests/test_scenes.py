@@ -231,8 +231,9 @@ def test_yfov_is_the_vertical_angle(quad, size):
         ({"yfov": 1, "pose": np.eye(3)}, "finite 4x4"),
         ({"yfov": 1, "convention": "blender"}, "opengl or opencv"),
         ({"K": np.eye(4)}, "3x3"),
-        ({"K": np.diag([50, 60, 1])}, "pixels are square"),
-        ({"K": [[50, 9, 0], [0, 50, 0], [0, 0, 1]]}, "K has rows"),
+        ({"K": np.diag([50, -60, 1])}, "above 0, not 50.0 and -60.0"),
+        ({"K": [[50, 9, 0], [0, 50, 0], [0, 0, 1]]}, "a skew of 9"),
+        ({"K": [[50, 0, 0], [9, 50, 0], [0, 0, 1]]}, "K has rows"),
     ],
 )
 def test_wrong_cameras_have_one_clear_error(arguments, words):
@@ -240,12 +241,29 @@ def test_wrong_cameras_have_one_clear_error(arguments, words):
         mz.Camera(**arguments)
 
 
-def test_principal_points_beside_the_centre_are_rejected(quad):
+def test_k_projects_points_onto_the_pixels_that_show_them(quad):
+    """Two focal lengths and a principal point beside the centre, in both conventions of pixels."""
     scene = mz.Scene([quad])
-    K = np.array([[50, 0, 31.5], [0, 50, 23.5], [0, 0, 1]])
-    with pytest.raises(ValueError, match="pixel_center=0"):
-        scene.render(64, 48, camera=mz.Camera(K))
-    assert scene.render(64, 48, camera=mz.Camera(K, pixel_center=0)).width == 64
+    pose = mz.Camera.look_at((0.7, 0.4, 3), (0.5, 0.5, 0)).pose("opencv")
+    K = np.array([[80, 0, 41.3], [0, 60, 11.7], [0, 0, 1]])
+    camera = mz.Camera(K, pose, convention="opencv")
+    picture = scene.render(64, 48, camera=camera, layers=("position", "depth", "mask"))
+    assert np.allclose(picture.camera.K, K, atol=1e-9)
+    rows, columns = np.nonzero(picture.mask)
+    assert len(rows) > 100
+    points = np.concatenate([picture.position[rows, columns], np.ones((len(rows), 1))], axis=1)
+    seen = (K @ (np.linalg.inv(pose) @ points.T)[:3]).T
+    assert np.allclose(seen[:, :2] / seen[:, 2:], np.stack([columns, rows], 1) + 0.5, atol=1 / 256)
+    assert np.allclose(seen[:, 2], picture.depth[rows, columns], rtol=1e-5)
+    K[:2, 2] -= 0.5
+    opencv = mz.Camera(K, pose, convention="opencv", pixel_center=0)
+    pictures = [scene.render(64, 48, camera=it).color for it in (camera, opencv)]
+    assert np.array_equal(*pictures)
+    assert "focal=(80, 60), center=(41.3, 11.7)" in repr(camera)
+
+
+def test_matrices_that_are_no_pose_are_rejected(quad):
+    scene = mz.Scene([quad])
     for_rows = mz.Camera.look_at((3, 2, 5), (0, 0, 0)).pose().T
     for pose in (np.diag([2, 2, 2, 1]), np.diag([1, 1, 1, 2]), for_rows):
         with pytest.raises(ValueError, match="a rotation and a position"):

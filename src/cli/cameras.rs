@@ -12,7 +12,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use marraztu_core::accuracy::Shot;
-use marraztu_core::scene::Projection;
+use marraztu_core::scene::{Intrinsics, Projection};
 use marraztu_io::{NewFile, SaveError, Spool};
 use marraztu_render::{AxesConvention, LayerNames, PictureCamera};
 use serde::Deserializer;
@@ -72,7 +72,12 @@ impl CameraFrame {
                 "w2c": rows(camera.camera_from_world(axes)),
             })
         };
-        let centre = camera.centre();
+        let Intrinsics { focal, principal_point, size } = camera.intrinsics;
+        let angle = |side: usize, focal: f64| {
+            #[expect(clippy::cast_precision_loss, reason = "at most 16,384 pixels")]
+            let half = side as f64 / 2.0;
+            json!(2.0 * libm::atan(half / focal))
+        };
         let mut entry = Map::new();
         let mut add = |name: &str, value: Value| entry.insert(name.to_owned(), value);
         add("file_path", json!(path_of("color").or_else(|| files.first().map(shown))));
@@ -87,25 +92,29 @@ impl CameraFrame {
         add("layers", Value::Object(by_name.collect()));
         add("scene", json!(scene));
         add("view", json!(view));
-        add("w", json!(shot.size.width));
-        add("h", json!(shot.size.height));
+        add("w", json!(size.width));
+        add("h", json!(size.height));
         match camera.projection {
             Projection::Perspective => {
                 add("projection", json!("perspective"));
-                add("fl_x", json!(camera.focal));
-                add("fl_y", json!(camera.focal));
-                add("camera_angle_x", json!(2.0 * libm::atan(centre.x / camera.focal)));
+                add("fl_x", json!(focal.x));
+                add("fl_y", json!(focal.y));
+                add("camera_angle_x", angle(size.width, focal.x));
+                add("camera_angle_y", angle(size.height, focal.y));
             }
             Projection::Orthographic => {
                 add("projection", json!("orthographic"));
-                add("pixels_per_unit", json!(camera.focal));
+                add("pixels_per_unit", json!(focal.y));
+                if focal.x != focal.y {
+                    add("pixel_aspect", json!(focal.y / focal.x));
+                }
             }
         }
-        add("cx", json!(centre.x));
-        add("cy", json!(centre.y));
+        add("cx", json!(principal_point.x));
+        add("cy", json!(principal_point.y));
         add("near", json!(camera.near));
         add("far", json!(camera.far));
-        add("K", json!(camera.intrinsics()));
+        add("K", json!(camera.k()));
         add("transform_matrix", rows(camera.world_from_camera(AxesConvention::OpenGl)));
         add("opengl", poses(AxesConvention::OpenGl));
         add("opencv", poses(AxesConvention::OpenCv));

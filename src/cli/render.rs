@@ -3,12 +3,13 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use glam::DVec2;
 use marraztu::picture_file::draw_into;
 use marraztu_core::accuracy::{AccuracyPreset, Settings, Shot};
 use marraztu_core::base::image::Size;
 use marraztu_core::edit::{framing, items, lighting};
 use marraztu_core::scene::{
-    CameraId, Command, Fill, Item, Light, Object, Observer, Pose, Projection,
+    CameraId, Command, Fill, Intrinsics, Light, Object, Observer, Pose, Projection,
 };
 use marraztu_io::{self as io, Progress};
 use marraztu_lab::dial::{Dial, Figures, Step, error_in_words, is_steady};
@@ -283,14 +284,11 @@ pub(crate) enum PoseLens {
     Selected,
     /// A perspective projection, with the angle of the selected camera.
     Perspective,
-    /// Degrees to each side, across the shorter side of the picture.
-    Shorter(f64),
-    /// Degrees to the left and to the right, for pictures of any shape.
-    Across(f64),
-    /// Degrees upwards and downwards, for pictures of any shape.
-    Upwards(f64),
-    /// An orthographic projection, with half of the shorter side in units.
-    Parallel(f64),
+    /// The tangents of half the angles of view across and upwards, for pictures of any shape.
+    /// Pixels are square if one is missing.
+    Angles([Option<f64>; 2]),
+    /// A projection with these intrinsics.
+    Calibrated(Projection, Intrinsics),
 }
 
 impl PoseLens {
@@ -298,10 +296,8 @@ impl PoseLens {
     const fn projection(self) -> Option<Projection> {
         match self {
             Self::Selected => None,
-            Self::Perspective | Self::Shorter(_) | Self::Across(_) | Self::Upwards(_) => {
-                Some(Projection::Perspective)
-            }
-            Self::Parallel(_) => Some(Projection::Orthographic),
+            Self::Perspective | Self::Angles(_) => Some(Projection::Perspective),
+            Self::Calibrated(projection, _) => Some(projection),
         }
     }
 }
@@ -310,14 +306,12 @@ impl Aim {
     /// Returns the aim for a picture of this size.
     #[expect(clippy::cast_precision_loss, reason = "at most 16,384 pixels")]
     pub(crate) fn at(self, size: Size) -> Self {
-        let [w, h] = [size.width as f64, size.height as f64];
-        let (pose, degrees, sides) = match self {
-            Self::Pose(pose, PoseLens::Across(degrees)) => (pose, degrees, h / w),
-            Self::Pose(pose, PoseLens::Upwards(degrees)) => (pose, degrees, w / h),
-            Self::Options | Self::From(_) | Self::Pose(..) => return self,
-        };
-        let tangent = libm::tan(degrees.to_radians()) * sides.min(1.0);
-        Self::Pose(pose, PoseLens::Shorter(libm::atan(tangent).to_degrees()))
+        let Self::Pose(pose, PoseLens::Angles(tangents)) = self else { return self };
+        let half = DVec2::new(size.width as f64, size.height as f64) / 2.0;
+        let [x, y] = [0, 1].map(|axis| tangents[axis].map(|tangent| half[axis] / tangent));
+        let focal = DVec2::new(x.or(y).unwrap_or(half.x), y.or(x).unwrap_or(half.y));
+        let intrinsics = Intrinsics { focal, principal_point: half, size };
+        Self::Pose(pose, PoseLens::Calibrated(Projection::Perspective, intrinsics))
     }
 }
 
@@ -418,19 +412,12 @@ fn place_camera(stage: &mut Stage, pose: Pose, lens: PoseLens) -> Result<(), Fai
     if stage.models_alone {
         frame(stage, framing::MODELS_FROM)?;
     }
-    let half_angle = match lens {
-        PoseLens::Selected | PoseLens::Perspective | PoseLens::Parallel(_) => None,
-        PoseLens::Shorter(degrees) | PoseLens::Across(degrees) | PoseLens::Upwards(degrees) => {
-            Some(degrees)
-        }
+    let intrinsics = match lens {
+        PoseLens::Calibrated(projection, intrinsics) => Some((projection, intrinsics)),
+        PoseLens::Selected | PoseLens::Perspective | PoseLens::Angles(_) => None,
     };
-    stage.change(framing::from_pose(&stage.scene, &stage.view, pose, half_angle))?;
+    stage.change(framing::from_pose(&stage.scene, &stage.view, pose, intrinsics))?;
     stage.view.projection = lens.projection().unwrap_or(stage.view.projection);
-    if let PoseLens::Parallel(half_size) = lens {
-        let mut camera = stage.scene.selected_camera(&stage.view).clone();
-        camera.lens.half_size = half_size;
-        stage.change(Command::Replace(Item::Camera(stage.view.camera, Box::new(camera))))?;
-    }
     Ok(())
 }
 

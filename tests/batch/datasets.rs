@@ -74,6 +74,49 @@ fn fits_its_poses(scene: &Path) {
     }
 }
 
+/// Cameras that look along -z from a distance of 6, with a lens and a size.
+fn cameras(lens: &str) -> String {
+    let matrix = "[[1,0,0,0],[0,1,0,0],[0,0,1,6],[0,0,0,1]]";
+    format!(r#"{{{lens}, "frames": [{{"file_path": "a.png", "transform_matrix": {matrix}}}]}}"#)
+}
+
+#[test]
+fn data_sets_have_the_calibration_of_their_cameras() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    std::fs::write(at("box.obj"), BOX).unwrap();
+    let lens = r#""w": 640, "h": 480, "fl_x": 572.4, "fl_y": 573.6, "cx": 319.1, "cy": 242"#;
+    std::fs::write(at("cameras.json"), cameras(lens)).unwrap();
+    let draw = |dataset: &str, views: &str| {
+        let base = ["batch", "box.obj", "--views", views, "--samples", "1"];
+        ends_with(
+            0,
+            folder.path(),
+            &[&base[..], &["--dataset", dataset, "--out", dataset]].concat(),
+        );
+    };
+    let near = |value: &serde_json::Value, expected: f64| {
+        assert!((value.as_f64().unwrap() - expected).abs() < 1e-9, "{value} {expected}");
+    };
+    draw("bop", "cameras.json");
+    let k = json(&at("bop/000000/scene_camera.json"))["0"]["cam_K"].clone();
+    for (i, expected) in [572.4, 0.0, 318.6, 0.0, 573.6, 241.5, 0.0, 0.0, 1.0].iter().enumerate() {
+        near(&k[i], *expected);
+    }
+    // What is written is read again, and draws the same bytes.
+    draw("nerf", "cameras.json");
+    let frame = json(&at("nerf/box/transforms.json"))["frames"][0].clone();
+    for (name, expected) in [("fl_x", 572.4), ("fl_y", 573.6), ("cx", 319.1), ("cy", 242.0)] {
+        near(&frame[name], expected);
+    }
+    let pixels = || samples(&at("nerf/box/color/00000.png"));
+    let first = pixels();
+    std::fs::copy(at("nerf/box/transforms.json"), at("again.json")).unwrap();
+    std::fs::remove_dir_all(at("nerf")).unwrap();
+    draw("nerf", "again.json");
+    assert!(pixels() == first);
+}
+
 #[test]
 fn the_segments_of_coco_are_those_of_the_pixels() {
     let folder = folder();

@@ -5,7 +5,9 @@ use marraztu_core::base::image::Size;
 use marraztu_core::base::math::Axis;
 use marraztu_core::edit::navigation::{self, Pointer};
 use marraztu_core::edit::{GesturePhase, Refusal};
-use marraztu_core::scene::{CameraMode, Observer, Projection, Subject, Transformation};
+use marraztu_core::scene::{
+    CameraMode, Command, Item, Lens, Observer, Projection, Subject, Transformation,
+};
 
 use super::desk::{Desk, close, turned};
 
@@ -54,12 +56,28 @@ fn an_orbit_keeps_its_centre_at_the_same_pixel_and_distance() {
     }
 }
 
+/// A desk for each projection, with a centred lens and with one that is shifted and has wide pixels.
+fn desks() -> Vec<Desk> {
+    let mut desks = Vec::new();
+    for projection in [Projection::Perspective, Projection::Orthographic] {
+        for (shift, pixel_aspect) in [([0.0; 2], 1.0), ([0.3, -0.4], 1.5)] {
+            let mut desk = desk();
+            desk.view.projection = projection;
+            let mut camera = desk.scene.selected_camera(&desk.view).clone();
+            camera.lens = Lens { shift, pixel_aspect, ..camera.lens };
+            let camera = Item::Camera(desk.view.camera, Box::new(camera));
+            desk.perform(Ok(Command::Replace(camera)));
+            desks.push(desk);
+        }
+    }
+    desks
+}
+
 #[test]
 fn in_parallel_and_in_perspective_a_pan_takes_the_object_along_with_the_pointer() {
-    for projection in [Projection::Perspective, Projection::Orthographic] {
-        let mut desk = desk();
+    for mut desk in desks() {
         desk.analyse();
-        desk.view.projection = projection;
+        let projection = desk.view.projection;
         let centre = desk.object().centre(0.0);
         let (before, by) = (pixel(&desk, centre), DVec2::new(30.0, -20.0));
         desk.perform(navigation::pan(&desk.scene, &desk.view, by, SIZE, GesturePhase::First));
@@ -70,9 +88,8 @@ fn in_parallel_and_in_perspective_a_pan_takes_the_object_along_with_the_pointer(
 
 #[test]
 fn the_wheel_keeps_the_point_under_the_pointer_fixed() {
-    for projection in [Projection::Perspective, Projection::Orthographic] {
-        let mut desk = desk();
-        desk.view.projection = projection;
+    for mut desk in desks() {
+        let projection = desk.view.projection;
         let point = DVec3::new(-60.0, 40.0, 100.0);
         let at = pixel(&desk, point);
         let pointer = Pointer { at, depth: Some(300.0) };

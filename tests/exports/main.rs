@@ -83,3 +83,17 @@ fn hidden_objects_and_parts_are_counted_in_notes() {
         }
     }
 }
+
+#[test]
+fn a_lens_that_gltf_lacks_is_named_in_a_note() {
+    let folder = tempfile::tempdir().unwrap();
+    for (lens, is_noted) in [("", false), ("shift: (0.1, 0.0)", true), ("pixel_aspect: 1.1", true)]
+    {
+        let cameras = format!("(id: 90, name: \"eye\", eye: (0.5, 0.8, 8.0), lens: ({lens}))");
+        let scene = format!("(version: 1, cameras: [{cameras}])");
+        put(folder.path(), &[("s.marraztu", &scene)]);
+        let notes = runs(folder.path(), &["export", "s.marraztu", "--out", "s.glb"]);
+        let is_there = notes.contains("eye has a centred lens with square pixels");
+        assert_eq!(is_there, is_noted, "{lens}: {notes}");
+    }
+}

@@ -96,13 +96,14 @@ fn cameras(rng: &mut Rng, size: Size) -> List<CameraId, Camera> {
             pose.eye = pose.axes * pose.eye;
         }
         let near = rng.one_of(&[1.0, 0.01, 55.0]);
+        let shift = shift(rng, size);
         Camera {
             name: name.to_owned(),
             visible: rng.percent(90),
             model: shapes()[rng.index(2)].clone(),
             material: MaterialChoice::Preset(PresetId::OBSIDIAN),
             pose: Tracked::new(pose),
-            lens: Lens { near, half_size, ..Lens::default() },
+            lens: Lens { near, half_size, shift, ..Lens::default() },
         }
     };
     let first = camera(rng, "camera 1");
@@ -110,6 +111,19 @@ fn cameras(rng: &mut Rng, size: Size) -> List<CameraId, Camera> {
     let all = [(CameraId(0), first), (CameraId(1), second)];
     let count = if rng.percent(20) { 2 } else { 1 };
     all.into_iter().take(count).collect()
+}
+
+/// A lens shift by whole pixels, so faces stay on borders of pixels. It leaves the random numbers of
+/// everything else as they are.
+#[expect(clippy::cast_precision_loss, reason = "a small picture")]
+fn shift(rng: &Rng, size: Size) -> [f64; 2] {
+    let mut rng = rng.clone();
+    let shorter = size.width.min(size.height) as f64;
+    let sides = [size.width, size.height].map(|side| side as f64 / 2.0);
+    if rng.percent(70) {
+        return [0.0; 2];
+    }
+    sides.map(|side| rng.real(-side, side).round() / shorter)
 }
 
 /// A random position. Integers put faces on borders of pixels and tiles.

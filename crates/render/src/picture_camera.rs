@@ -8,8 +8,7 @@
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
 use marraztu_core::accuracy::Shot;
-use marraztu_core::base::image::Size;
-use marraztu_core::scene::Projection;
+use marraztu_core::scene::{Intrinsics, Lens, Projection};
 
 /// The directions of a camera's axes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -36,17 +35,15 @@ impl AxesConvention {
 /// The camera of a picture: a pinhole, or an orthographic projection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PictureCamera {
-    /// The size of the picture in pixels.
-    pub size: Size,
     /// The projection.
     pub projection: Projection,
-    /// In perspective, the focal length in pixels; in orthographic projection, pixels per unit of
-    /// the world. Pixels are square.
-    pub focal: f64,
+    /// The focal lengths or pixels per unit, the principal point, and the size of the picture.
+    pub intrinsics: Intrinsics,
     /// The depth of the near plane; nearer points are not drawn.
     pub near: f64,
     /// The depth of the far plane; farther points are not drawn.
     pub far: f64,
+    lens: Lens,
     /// The camera's pose with the axes of OpenGL. It has no scale.
     world_from_camera: DMat4,
 }
@@ -56,25 +53,14 @@ impl PictureCamera {
     #[must_use]
     pub fn of(shot: &Shot) -> Self {
         let Shot { scene, view, size, .. } = shot;
-        let lens = scene.selected_camera(view).lens;
-        // Twice the focal length is this factor times the shorter side: see `math::perspective`.
-        let (per_half, near, far) = match view.projection {
-            Projection::Perspective => {
-                (1.0 / libm::tan(lens.half_angle.to_radians()), lens.near, lens.far)
-            }
-            Projection::Orthographic => {
-                (1.0 / lens.half_size, lens.parallel_near, lens.parallel_far)
-            }
+        let (lens, projection) = (scene.selected_camera(view).lens, view.projection);
+        let (near, far) = match projection {
+            Projection::Perspective => (lens.near, lens.far),
+            Projection::Orthographic => (lens.parallel_near, lens.parallel_far),
         };
+        let intrinsics = lens.intrinsics(projection, *size);
         let world_from_camera = scene.observer_frame(view);
-        let focal = half(size.width.min(size.height)) * per_half;
-        Self { size: *size, projection: view.projection, focal, near, far, world_from_camera }
-    }
-
-    /// Returns the principal point in pixels: the centre of the picture.
-    #[must_use]
-    pub fn centre(&self) -> DVec2 {
-        DVec2::new(half(self.size.width), half(self.size.height))
+        Self { projection, intrinsics, near, far, lens, world_from_camera }
     }
 
     /// Returns the rows of the intrinsic matrix K, in pixels, for axes of OpenCV: in perspective
@@ -83,9 +69,9 @@ impl PictureCamera {
     /// The centre of the first pixel is (0.5, 0.5). For programs that put it at (0, 0), subtract
     /// 0.5 from the principal point.
     #[must_use]
-    pub fn intrinsics(&self) -> [[f64; 3]; 3] {
-        let DVec2 { x, y } = self.centre();
-        [[self.focal, 0.0, x], [0.0, self.focal, y], [0.0, 0.0, 1.0]]
+    pub fn k(&self) -> [[f64; 3]; 3] {
+        let Intrinsics { focal, principal_point: at, .. } = self.intrinsics;
+        [[focal.x, 0.0, at.x], [0.0, focal.y, at.y], [0.0, 0.0, 1.0]]
     }
 
     /// Returns the pose: the matrix that leads from the camera's frame to the world.
@@ -109,26 +95,15 @@ impl PictureCamera {
     /// plane.
     #[must_use]
     pub fn ndc_from_world(&self) -> DMat4 {
-        let DVec2 { x, y } = DVec2::splat(self.focal) / self.centre();
-        let (near, far, range) = (self.near, self.far, self.far - self.near);
-        // The columns of `math::perspective` and `math::orthographic`.
-        let columns = match self.projection {
-            Projection::Perspective => [
-                DVec4::new(0.0, 0.0, near / range, -1.0),
-                DVec4::new(0.0, 0.0, near * far / range, 0.0),
-            ],
-            Projection::Orthographic => {
-                [DVec4::new(0.0, 0.0, 1.0 / range, 0.0), DVec4::new(0.0, 0.0, far / range, 1.0)]
-            }
-        };
-        DMat4::from_cols(DVec4::X * x, DVec4::Y * y, columns[0], columns[1])
+        self.lens.clip_from_view(self.projection, self.intrinsics.size)
             * self.camera_from_world(AxesConvention::OpenGl)
     }
 
     /// Returns the point of the world that is seen at a position of the picture, at this depth.
     #[must_use]
     pub fn point(&self, position: DVec2, depth: f64) -> DVec3 {
-        let aside = (position - self.centre()) / self.focal;
+        let Intrinsics { focal, principal_point, .. } = self.intrinsics;
+        let aside = (position - principal_point) / focal;
         let DVec2 { x, y } = match self.projection {
             Projection::Perspective => aside * depth,
             Projection::Orthographic => aside,
@@ -145,11 +120,6 @@ impl PictureCamera {
             Projection::Perspective => p.truncate() / p.z,
             Projection::Orthographic => p.truncate(),
         };
-        (aside * self.focal + self.centre(), p.z)
+        (aside * self.intrinsics.focal + self.intrinsics.principal_point, p.z)
     }
-}
-
-#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
-fn half(pixels: usize) -> f64 {
-    pixels as f64 / 2.0
 }

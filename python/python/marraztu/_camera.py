@@ -16,10 +16,11 @@ CONVENTIONS = ("opengl", "opencv")
 class Camera:
     """A camera with a pose, or one that frames the whole scene from a direction.
 
-    The lens is given by the matrix `K` of intrinsics in pixels, or by `yfov`, the vertical angle of
-    view in radians. Pixels are square and the principal point is the centre of the picture. In `K`,
-    the upper left corner of the picture is (0, 0), so the centre of the first pixel is (0.5, 0.5);
-    for a `K` that puts it at (0, 0), as OpenCV does, give `pixel_center=0`.
+    The lens is given by the matrix `K` of intrinsics in pixels, with two focal lengths and any
+    principal point, or by `yfov`, the vertical angle of view in radians, for square pixels and the
+    centre of the picture. In `K`, the upper left corner of the picture is (0, 0), so the centre of
+    the first pixel is (0.5, 0.5), as in COLMAP; for a `K` that puts it at (0, 0), as OpenCV and BOP
+    do, give `pixel_center=0`. Lenses that distort have no `K` alone: undistort their pictures first.
 
     `pose` is a 4x4 matrix from camera to world. With `convention="opengl"`, x points to the right,
     y up, and the camera looks along -z (glTF, NeRF, pyrender, Blender). With `"opencv"`, y points
@@ -112,18 +113,22 @@ class Camera:
         if self._direction is not None:
             return self._direction
         if self._K is not None:
-            tangent = _tangent(self._K, width, height)
+            lens = self._K[[0, 1, 0, 1], [0, 1, 2, 2]].tolist()
         elif self.yfov is not None:
-            # From the vertical angle to the one across the shorter side.
-            tangent = math.tan(self.yfov / 2) * min(width, height) / height
-        return self.pose("opengl").tolist(), tangent
+            focal = height / 2 / math.tan(self.yfov / 2)
+            lens = [focal, focal, width / 2, height / 2]
+        return self.pose("opengl").tolist(), lens
 
     def __repr__(self) -> str:
         if self._direction is not None:
             right, up = self._direction
             return f"Camera.around(right={right:.4g}, up={up:.4g})"
         x, y, z = self.pose()[:3, 3]
-        lens = f"yfov={self.yfov:.4g}" if self._K is None else f"focal={self._K[0, 0]:.5g}"
+        if self._K is None:
+            lens = f"yfov={self.yfov:.4g}"
+        else:
+            fx, fy, cx, cy = self._K[[0, 1, 0, 1], [0, 1, 2, 2]]
+            lens = f"focal=({fx:.5g}, {fy:.5g}), center=({cx:.5g}, {cy:.5g})"
         return f"Camera({lens}, eye=({x:.4g}, {y:.4g}, {z:.4g}), convention={self.convention!r})"
 
 
@@ -139,23 +144,15 @@ def _intrinsics(K: NDArray[np.float64], pixel_center: float) -> NDArray[np.float
 
     if K.shape != (3, 3) or not np.isfinite(K).all():
         raise ValueError("K is a finite 3x3 matrix")
-    fx, fy = K[0, 0], K[1, 1]
-    if not (fx > 0 and abs(fx - fy) <= fx / 1000):
-        raise ValueError(f"fx and fy are equal and above 0, since pixels are square: {fx}, {fy}")
-    if abs(K[0, 1]) > fx / 1000 or np.any(K[1, 0] != 0) or list(K[2]) != [0, 0, 1]:
-        raise ValueError("K has rows (f, 0, cx), (0, f, cy), (0, 0, 1)")
+    (fx, skew, cx), (shear, fy, cy), row = K
+    if not (fx > 0 and fy > 0):
+        raise ValueError(f"the focal lengths of K are above 0, not {fx} and {fy}")
+    if shear != 0 or list(row) != [0, 0, 1]:
+        raise ValueError("K has rows (fx, 0, cx), (0, fy, cy), (0, 0, 1)")
+    # Across the picture, a skew of less than this is below a thousandth of a pixel.
+    if abs(skew) > 1e-3 * fy / max(abs(cx), abs(cy), 1):
+        raise ValueError(f"K has a skew of {skew:g}; only rows and columns at right angles are drawn")
     K = K.copy()
+    K[0, 1] = 0
     K[:2, 2] += 0.5 - pixel_center
     return K
-
-
-def _tangent(K: NDArray[np.float64], width: int, height: int) -> float:
-    """Returns the tangent of half the angle across the shorter side."""
-    cx, cy = K[:2, 2]
-    if abs(cx - width / 2) > 0.01 or abs(cy - height / 2) > 0.01:
-        raise ValueError(
-            f"the principal point of K is ({cx:g}, {cy:g}), but the centre of a picture of "
-            f"{width} x {height} is ({width / 2:g}, {height / 2:g}); other points are not "
-            "supported. If K puts the centre of the first pixel at (0, 0), give pixel_center=0"
-        )
-    return float(min(width, height) / 2 / (K[0, 0] if width < height else K[1, 1]))

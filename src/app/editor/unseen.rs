@@ -188,9 +188,12 @@ pub(crate) fn out_of_sight(state: &State, object: &Object, size: Size) -> bool {
         }
         Projection::Orthographic => (lens.parallel_near, lens.parallel_far, lens.half_size),
     };
-    // The bounding sphere is compared with the sides of the frustum and with four pixels.
-    let aside = centre.x.abs() - radius > half * width / shorter
-        || centre.y.abs() - radius > half * height / shorter;
+    // The bounding sphere is compared with the sides of the frustum and with four pixels. A shifted
+    // lens moves the sides, and pixels that are not square change their distance.
+    let [right, down] = lens.shift.map(|by| 2.0 * half * by);
+    let aspect = lens.pixel_aspect;
+    let aside = (centre.x + right * aspect).abs() - radius > half * aspect * width / shorter
+        || (centre.y - down).abs() - radius > half * height / shorter;
     let pixels = radius / half * shorter / 2.0;
     before + radius < near || before - radius > far || aside || pixels < 4.0
 }
@@ -199,6 +202,7 @@ pub(crate) fn out_of_sight(state: &State, object: &Object, size: Size) -> bool {
 mod tests {
     use super::*;
     use glam::{DMat4, DVec3};
+    use marraztu_core::scene::{Command, Item, Tracked};
     use marraztu_io as io;
 
     #[test]
@@ -216,10 +220,20 @@ mod tests {
         let (scene, view) = io::default_scene();
         let (_, object) = scene.objects.iter().next().unwrap();
         let mut object = object.clone();
-        let state = State::new(scene.clone(), view);
+        let mut state = State::new(scene.clone(), view);
+        // With a lens shift of a whole height, the axis is beyond the upper left of the picture.
+        let mut camera = scene.selected_camera(&state.view).clone();
+        camera.lens.shift = [-1.0, -1.0];
+        let item = Item::Camera(state.view.camera, Box::new(camera));
+        let undo = Command::Replace(item).apply(&mut state.scene).unwrap();
+        let size = Size::new(800, 600);
+        assert!(out_of_sight(&state, &object, size), "at the axis");
+        object.placement = Tracked::new(DMat4::from_translation(DVec3::new(320.0, -320.0, 0.0)));
+        assert!(!out_of_sight(&state, &object, size), "to the lower right of the axis");
+        undo.apply(&mut state.scene).unwrap();
         let mut at = |m: DMat4| {
-            object.placement = marraztu_core::scene::Tracked::new(m);
-            out_of_sight(&state, &object, Size::new(800, 600))
+            object.placement = Tracked::new(m);
+            out_of_sight(&state, &object, size)
         };
         assert!(!at(DMat4::IDENTITY));
         assert!(at(DMat4::from_translation(DVec3::Z * 900.0)), "behind the camera");

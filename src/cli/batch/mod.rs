@@ -11,6 +11,7 @@
 //! the number of pictures has no limit.
 
 mod cache;
+mod camera_file;
 mod dataset;
 mod digest;
 mod jobs;

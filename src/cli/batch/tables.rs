@@ -215,7 +215,7 @@ fn filled(
 /// Returns the entries of a picture of BOP: camera, poses, and facts of the objects.
 fn bop_entries(image: &DatasetImage, gap: &mut dyn FnMut(&DatasetObject) -> String) -> [String; 3] {
     // The centre of the first pixel is (0, 0) there.
-    let mut k = image.camera.intrinsics();
+    let mut k = image.camera.k();
     k[0][2] -= 0.5;
     k[1][2] -= 0.5;
     let w2c = image.camera.camera_from_world(AxesConvention::OpenCv);
@@ -256,7 +256,7 @@ fn coco_entries(
     image: &DatasetImage,
     gap: &mut dyn FnMut(&DatasetObject) -> String,
 ) -> [String; 3] {
-    let (id, size) = (job.index + 1, image.camera.size);
+    let (id, size) = (job.index + 1, image.camera.intrinsics.size);
     let name = job.out().file_name().map(|name| name.to_string_lossy());
     let picture = json!({
         "id": id, "file_name": name, "width": size.width, "height": size.height,

@@ -276,7 +276,12 @@ impl Hostile {
             half_size: self.amount(500.0),
             parallel_near: self.number(10.0),
             parallel_far: self.amount(4000.0),
+            ..Lens::default()
         };
+        if self.rng.one_in(3) {
+            lens.shift = [self.number(2.0), self.number(2.0)];
+            lens.pixel_aspect = self.amount(2.0);
+        }
         if self.bool() || !lens.is_valid() {
             lens = Lens::default();
         }

@@ -175,7 +175,7 @@ pub fn orthographic(half_size: f64, near: f64, far: f64, size: Size) -> DMat4 {
 
 /// Returns the factors of x and y with which the shorter side of the picture spans -1 to 1.
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
-fn shorter_side(size: Size) -> DVec2 {
+pub(crate) fn shorter_side(size: Size) -> DVec2 {
     let (width, height) = (size.width as f64, size.height as f64);
     let shorter = width.min(height);
     DVec2::new(shorter / width, shorter / height)

@@ -15,7 +15,8 @@ use glam::{DMat3, DVec3};
 use super::{Change, GesturePhase, Refusal, set_transform};
 use crate::base::math;
 use crate::scene::{
-    Camera, CameraMode, Command, Item, Lens, Object, ObjectId, Observer, Pose, Scene, Tracked, View,
+    Camera, CameraMode, Command, Intrinsics, Item, Lens, Object, ObjectId, Observer, Pose,
+    Projection, Scene, Tracked, View,
 };
 
 /// The bounding sphere to frame.
@@ -106,12 +107,17 @@ pub fn models(scene: &Scene, view: &View, [right, up]: [f64; 2]) -> Change {
     framed(scene, view, &shown(scene, view), axes, MARGIN)
 }
 
-/// Places the selected camera. `half_angle` is the new one of its lens, in degrees, if given. The
-/// planes of the lens enclose everything visible, as closely as the depth buffer needs.
+/// Places the selected camera, with the intrinsics of its lens in a projection if given. The planes
+/// of the lens enclose everything visible, as closely as the depth buffer needs.
 #[must_use]
-pub fn from_pose(scene: &Scene, view: &View, pose: Pose, half_angle: Option<f64>) -> Command {
+pub fn from_pose(
+    scene: &Scene,
+    view: &View,
+    pose: Pose,
+    intrinsics: Option<(Projection, Intrinsics)>,
+) -> Command {
     let camera = scene.selected_camera(view);
-    let mut lens = Lens { half_angle: half_angle.unwrap_or(camera.lens.half_angle), ..camera.lens };
+    let mut lens = camera.lens;
     if let Some(Sphere { centre, radius }) = sphere(scene, view, &shown(scene, view)) {
         let radius = if radius > 0.0 { radius } else { 1.0 };
         let distance = pose.eye.distance(centre);
@@ -122,6 +128,9 @@ pub fn from_pose(scene: &Scene, view: &View, pose: Pose, half_angle: Option<f64>
         let parallel_near = lens.parallel_near.min(near);
         let half_size = 1.1 * radius;
         lens = Lens { near, far, half_size, parallel_near, parallel_far: far, ..lens };
+    }
+    if let Some((projection, intrinsics)) = intrinsics {
+        lens = lens.with_intrinsics(projection, &intrinsics);
     }
     let camera = Camera { pose: Tracked::new(pose), lens, ..camera.clone() };
     Command::Replace(Item::Camera(view.camera, Box::new(camera)))
@@ -165,13 +174,13 @@ pub fn lens(lens: &Lens, r: f64) -> (f64, Lens) {
     let near = 1.0_f64.min((distance - r) / 2.0).min(distance / 1000.0);
     let far = 2000.0_f64.max(distance + 2.0 * r);
     let framed = Lens {
-        half_angle: lens.half_angle,
         near,
         automatic_near: lens.automatic_near,
         far,
         half_size: 1.1 * r,
         parallel_near: lens.parallel_near.min(near),
         parallel_far: far,
+        ..*lens
     };
     (distance, framed)
 }

@@ -70,7 +70,9 @@ pub fn orbit(scene: &Scene, view: &View, yaw: f64, pitch: f64, phase: GesturePha
 /// If the observer is an object.
 pub fn pan(scene: &Scene, view: &View, pixels: DVec2, size: Size, phase: GesturePhase) -> Change {
     let pose = looking_pose(scene, view)?;
-    let units = pixels * units_per_pixel(scene, view, size, depth_of_pivot(scene, view, &pose));
+    let aspect = DVec2::new(scene.selected_camera(view).lens.pixel_aspect, 1.0);
+    let depth = depth_of_pivot(scene, view, &pose);
+    let units = pixels * aspect * units_per_pixel(scene, view, size, depth);
     let pose = moved(&pose, DVec3::new(-units.x, units.y, 0.0));
     set_transform::pose(scene, view.camera, Pose { mode: CameraMode::Fly, ..pose }, phase)
 }
@@ -113,8 +115,8 @@ pub fn zoom(
             let camera = scene.selected_camera(view);
             let lens = Lens { half_size: camera.lens.half_size * left, ..camera.lens };
             // Moving aside by the change of the picture's size keeps the point under the pointer.
-            let aside =
-                from_middle(pointer.at, size) * shown_per_pixel(camera.lens.half_size, size);
+            let aside = from_axis(pointer.at, &camera.lens, size)
+                * shown_per_pixel(camera.lens.half_size, size);
             let aside = if centre.is_some() { DVec2::ZERO } else { aside * (1.0 - left) };
             let pose = moved(&pose, aside.extend(0.0));
             set_transform::pose_and_lens(scene, view.camera, pose, lens, phase)
@@ -177,8 +179,9 @@ fn step_along(
 
 /// Returns the direction through a point of the picture in the camera's frame, at depth 1.
 fn ray_through(scene: &Scene, view: &View, at: DVec2, size: Size) -> DVec3 {
-    let slope = libm::tan(scene.selected_camera(view).lens.half_angle.to_radians());
-    (from_middle(at, size) * shown_per_pixel(slope, size)).extend(-1.0)
+    let lens = scene.selected_camera(view).lens;
+    let slope = libm::tan(lens.half_angle.to_radians());
+    (from_axis(at, &lens, size) * shown_per_pixel(slope, size)).extend(-1.0)
 }
 
 /// A surface that the eye approaches.
@@ -207,7 +210,7 @@ impl Approach {
     }
 }
 
-/// Returns the world units per pixel at `depth` in front of the camera.
+/// Returns the world units per pixel, from top to bottom, at `depth` in front of the camera.
 pub fn units_per_pixel(scene: &Scene, view: &View, size: Size, depth: f64) -> f64 {
     let lens = scene.selected_camera(view).lens;
     match view.projection {
@@ -248,9 +251,9 @@ fn shown_per_pixel(half: f64, size: Size) -> f64 {
     2.0 * half / size.width.min(size.height).max(1) as f64
 }
 
-/// Returns a position relative to the middle of the picture, x to the right and y up.
-#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
-fn from_middle(at: DVec2, size: Size) -> DVec2 {
-    let middle = DVec2::new(size.width as f64, size.height as f64) / 2.0;
-    DVec2::new(at.x - middle.x, middle.y - at.y)
+/// Returns a position relative to the axis of the lens, x to the right and y up, in heights of a
+/// pixel.
+fn from_axis(at: DVec2, lens: &Lens, size: Size) -> DVec2 {
+    let axis = lens.principal_point(size);
+    DVec2::new((at.x - axis.x) * lens.pixel_aspect, axis.y - at.y)
 }

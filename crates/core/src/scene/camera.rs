@@ -1,6 +1,6 @@
 //! A camera, its pose and its lens. It looks along -Z of its frame.
 
-use glam::{DMat3, DMat4, DVec3, DVec4};
+use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 use serde::{Deserialize, Serialize};
 
 use super::{MaterialChoice, Model, ObjectId, Projection, Tracked};
@@ -97,10 +97,14 @@ impl Pose {
 }
 
 /// The lens of a camera, in perspective and in orthographic projection.
+///
+/// Its axis meets the picture at the principal point. With the defaults of `shift` and
+/// `pixel_aspect`, that is the centre of the picture, and pixels are square.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Lens {
-    /// Degrees to each side of the axis, across the shorter side of the picture: above 0, below 90.
+    /// Degrees to each side of the axis, across the shorter side of a centred picture with square
+    /// pixels: above 0, below 90. This defines the vertical focal length.
     pub half_angle: f64,
     /// The near plane in perspective: more than 0.
     pub near: f64,
@@ -115,6 +119,41 @@ pub struct Lens {
     pub parallel_near: f64,
     /// The far plane in orthographic projection: more than `parallel_near`.
     pub parallel_far: f64,
+    /// The lens shift: the principal point relative to the centre of the picture, to the right and
+    /// down, in lengths of the shorter side.
+    #[serde(skip_serializing_if = "is_centred")]
+    pub shift: [f64; 2],
+    /// The width of a pixel divided by its height, which is `f_y / f_x`: above 0.
+    #[serde(skip_serializing_if = "is_square")]
+    pub pixel_aspect: f64,
+}
+
+fn is_centred(shift: &[f64; 2]) -> bool {
+    *shift == [0.0; 2]
+}
+
+fn is_square(pixel_aspect: &f64) -> bool {
+    *pixel_aspect == 1.0
+}
+
+/// The intrinsics of a camera for pictures of one size: the numbers of the matrix K.
+///
+/// ```text
+///     f_x  0   c_x
+/// K =  0  f_y  c_y      in pixels; the centre of the first pixel is (0.5, 0.5)
+///      0   0    1
+/// ```
+///
+/// Hartley and Zisserman, "Multiple View Geometry in Computer Vision", section 6.1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Intrinsics {
+    /// The focal lengths in perspective, or the pixels per unit in orthographic projection, along x
+    /// and y.
+    pub focal: DVec2,
+    /// The principal point, from the upper left corner, x to the right and y down.
+    pub principal_point: DVec2,
+    /// The size of the picture.
+    pub size: Size,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
@@ -132,9 +171,17 @@ impl Default for Lens {
             half_size: 500.0,
             parallel_near: 0.0,
             parallel_far: 2000.0,
+            shift: [0.0; 2],
+            pixel_aspect: 1.0,
         }
     }
 }
+
+/// The largest lens shift: a crop of one pixel from a picture of 16,384 pixels fits.
+const MOST_SHIFT: f64 = 1e5;
+
+/// The range of the aspect of pixels.
+const PIXEL_ASPECTS: std::ops::RangeInclusive<f64> = 1e-3..=1e3;
 
 impl Lens {
     /// Returns whether the lens gives a valid projection.
@@ -148,17 +195,159 @@ impl Lens {
             && far > near
             && half_size > 0.0
             && parallel_far > parallel_near
+            && self.shift.iter().all(|by| by.abs() <= MOST_SHIFT)
+            && PIXEL_ASPECTS.contains(&self.pixel_aspect)
     }
 
     /// Returns the matrix `clip_from_view` for a picture of this size.
     pub fn clip_from_view(&self, projection: Projection, size: Size) -> DMat4 {
-        match projection {
+        // The principal point from -1 to 1, to the right and up. Twice the shift is in halves of
+        // the shorter side.
+        let [right, down] = self.shift.map(|by| 2.0 * by);
+        let sides = math::shorter_side(size);
+        let (x, y) = (right * sides.x, down * sides.y);
+        let mut clip = match projection {
             Projection::Perspective => {
                 math::perspective(self.half_angle.to_radians(), self.near, self.far, size)
             }
             Projection::Orthographic => {
                 math::orthographic(self.half_size, self.parallel_near, self.parallel_far, size)
             }
+        };
+        clip.x_axis.x /= self.pixel_aspect;
+        // Both are multiplied by w, which is -z in perspective and 1 in orthographic projection.
+        // Subtracting from 0 keeps the zeros of a centred lens positive.
+        match projection {
+            Projection::Perspective => (clip.z_axis.x, clip.z_axis.y) = (0.0 - x, y),
+            Projection::Orthographic => (clip.w_axis.x, clip.w_axis.y) = (x, 0.0 - y),
+        }
+        clip
+    }
+
+    /// Returns the principal point of a picture, in pixels from its upper left corner.
+    pub fn principal_point(&self, size: Size) -> DVec2 {
+        let (sides, shorter) = sides(size);
+        sides / 2.0 + DVec2::from_array(self.shift) * shorter
+    }
+
+    /// Returns the intrinsics for a picture of this size.
+    pub fn intrinsics(&self, projection: Projection, size: Size) -> Intrinsics {
+        let per_half = match projection {
+            Projection::Perspective => 1.0 / libm::tan(self.half_angle.to_radians()),
+            Projection::Orthographic => 1.0 / self.half_size,
+        };
+        let y = sides(size).1 / 2.0 * per_half;
+        let focal = DVec2::new(y / self.pixel_aspect, y);
+        Intrinsics { focal, principal_point: self.principal_point(size), size }
+    }
+
+    /// Returns this lens with the intrinsics of a calibrated camera. The planes are kept.
+    #[must_use]
+    pub fn with_intrinsics(self, projection: Projection, intrinsics: &Intrinsics) -> Self {
+        let Intrinsics { focal, principal_point, size } = *intrinsics;
+        let (sides, shorter) = sides(size);
+        let half = shorter / 2.0 / focal.y;
+        let shift = ((principal_point - sides / 2.0) / shorter).to_array();
+        let lens = Self { shift, pixel_aspect: focal.y / focal.x, ..self };
+        match projection {
+            Projection::Perspective => Self { half_angle: libm::atan(half).to_degrees(), ..lens },
+            Projection::Orthographic => Self { half_size: half, ..lens },
+        }
+    }
+}
+
+/// Returns the sides of a picture in pixels, and the shorter one.
+#[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels a side")]
+fn sides(size: Size) -> (DVec2, f64) {
+    let sides = DVec2::new(size.width as f64, size.height as f64);
+    (sides, sides.min_element())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::rng::Rng;
+
+    #[test]
+    fn points_are_projected_by_k_within_1_256_pixel_for_any_camera() {
+        let mut rng = Rng::new(21);
+        for i in 0..1000 {
+            let side = |rng: &mut Rng| 1 + usize::try_from(rng.below(4096)).unwrap();
+            let size = Size::new(side(&mut rng), side(&mut rng));
+            let (sides, _) = sides(size);
+            let longer = sides.max_element();
+            let part = |rng: &mut Rng, low: f64, high: f64| {
+                DVec2::new(rng.real(low, high), rng.real(low, high))
+            };
+            let focal = part(&mut rng, 0.2, 5.0) * longer;
+            // The principal point of a crop lies outside.
+            let principal_point = part(&mut rng, -1.0, 2.0) * sides;
+            let intrinsics = Intrinsics { focal, principal_point, size };
+            for projection in [Projection::Perspective, Projection::Orthographic] {
+                let lens = Lens::default().with_intrinsics(projection, &intrinsics);
+                assert!(lens.is_valid(), "{i}: {lens:?}");
+                let back = lens.intrinsics(projection, size);
+                assert!(back.focal.distance(focal) < 1e-9 * longer, "{i}: {back:?}");
+                assert!(back.principal_point.distance(principal_point) < 1e-9 * longer, "{i}");
+                // A point that K sees in the picture, with the axes of OpenCV.
+                let pixel = part(&mut rng, 0.0, 1.0) * sides;
+                let depth = rng.real(2.0, 1500.0);
+                let aside = (pixel - principal_point) / focal;
+                let aside = match projection {
+                    Projection::Perspective => aside * depth,
+                    Projection::Orthographic => aside,
+                };
+                let view = DVec3::new(aside.x, -aside.y, -depth);
+                let clip = lens.clip_from_view(projection, size) * view.extend(1.0);
+                let ndc = clip.truncate() / clip.w;
+                let found = (DVec2::new(ndc.x, -ndc.y) + 1.0) * sides / 2.0;
+                assert!(found.distance(pixel) < 1.0 / 256.0, "{i}: {found} {pixel}");
+                assert!((0.0..=1.0).contains(&ndc.z), "{i}: {ndc}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_centred_lens_with_square_pixels_has_the_bits_of_the_plain_projection() {
+        let lens = Lens { half_angle: 31.7, ..Lens::default() };
+        for size in [Size::new(640, 480), Size::new(3, 1000), Size::new(7, 7)] {
+            let plain = [
+                math::perspective(lens.half_angle.to_radians(), lens.near, lens.far, size),
+                math::orthographic(lens.half_size, lens.parallel_near, lens.parallel_far, size),
+            ];
+            for (projection, plain) in
+                [Projection::Perspective, Projection::Orthographic].into_iter().zip(plain)
+            {
+                let own = lens.clip_from_view(projection, size);
+                assert!(math::same_bits(&own, &plain), "{size:?} {projection:?}: {own}");
+            }
+        }
+    }
+
+    #[test]
+    fn half_the_size_has_half_the_intrinsics() {
+        let focal = DVec2::new(572.4, 573.6);
+        let principal_point = DVec2::new(325.3, 242.0);
+        let size = Size::new(640, 480);
+        let whole = Intrinsics { focal, principal_point, size };
+        let lens = Lens::default().with_intrinsics(Projection::Perspective, &whole);
+        let half = lens.intrinsics(Projection::Perspective, Size::new(320, 240));
+        assert!(half.focal.distance(focal / 2.0) < 1e-9, "{half:?}");
+        assert!(half.principal_point.distance(principal_point / 2.0) < 1e-9, "{half:?}");
+    }
+
+    #[test]
+    fn lenses_without_a_projection_are_invalid() {
+        for (shift, pixel_aspect) in [
+            ([f64::NAN, 0.0], 1.0),
+            ([0.0, f64::INFINITY], 1.0),
+            ([0.0, 2e5], 1.0),
+            ([0.0; 2], 0.0),
+            ([0.0; 2], -1.0),
+            ([0.0; 2], f64::NAN),
+        ] {
+            let lens = Lens { shift, pixel_aspect, ..Lens::default() };
+            assert!(!lens.is_valid(), "{lens:?}");
         }
     }
 }

@@ -105,7 +105,8 @@ pub enum CommandError {
     NotFinite,
     /// The lens would give an invalid projection.
     #[error(
-        "the lens needs an angle between 0 and 90 degrees, a size above 0, and near before far"
+        "the lens needs an angle between 0 and 90 degrees, a size above 0, near before far, and a \
+         pixel aspect from 0.001 to 1000"
     )]
     Lens,
     /// The light would become infinite or negative.

@@ -17,6 +17,10 @@ use marraztu_core::scene::{
 impl Writer<'_> {
     pub(super) fn camera(&mut self, camera: &Camera) {
         let lens = &camera.lens;
+        if lens.shift != [0.0; 2] || lens.pixel_aspect != 1.0 {
+            let text = "has a centred lens with square pixels, since glTF has no other";
+            self.notes.push(format!("{} {text}", camera.name));
+        }
         let is_perspective = self.view.projection == Projection::Perspective;
         // Near and far planes that are equal as f32 are invalid. A perspective camera may omit the
         // far plane, so it is dropped then.

@@ -125,8 +125,11 @@ impl<'a> Window<'a> {
             return None;
         }
         // One more pixel on each side, for rounding.
-        let x = [clip.left - 1, clip.right + 1].map(|x| (f64::from(x) / half[0] - 1.0) / px);
-        let y = [clip.bottom + 1, clip.top - 1].map(|y| (1.0 - f64::from(y) / half[1]) / py);
+        let axis = plan.axis();
+        let x =
+            [clip.left - 1, clip.right + 1].map(|x| (f64::from(x) / half[0] - 1.0 - axis[0]) / px);
+        let y =
+            [clip.bottom + 1, clip.top - 1].map(|y| (1.0 - f64::from(y) / half[1] - axis[1]) / py);
         // The view widens with the distance, so the extremes are at the nearest or farthest corner.
         let reach = |[low, high]: [f64; 2]| {
             let all = distances.map(|d| [low * d, high * d]);

@@ -103,6 +103,18 @@ pub(crate) enum Rules {
 }
 
 impl FramePlan {
+    /// Returns the position of the view axis in normalised device coordinates: 0 for a centred
+    /// lens. In these coordinates, a point of view space is `x * clip_from_view.x_axis.x` away from
+    /// the axis, divided by w.
+    pub(crate) fn axis(&self) -> [f64; 2] {
+        let m = &self.clip_from_view;
+        match self.eye {
+            // w is -z.
+            Eye::Point => [0.0 - m.z_axis.x, 0.0 - m.z_axis.y],
+            Eye::Parallel => [m.w_axis.x, m.w_axis.y],
+        }
+    }
+
     /// Returns the plan of the picture seen by one sample of each pixel, `shift` subpixels from the
     /// centre: right and down, in 1/256 pixel.
     #[must_use]

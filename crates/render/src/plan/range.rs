@@ -27,7 +27,8 @@ impl FramePlan {
                 far <= high && (near >= low || self.ways_off().all(|off| off >= low))
             }
             Eye::Parallel => {
-                let sides = [1.0 / m.x_axis.x, 1.0 / m.y_axis.y];
+                let [x, y] = self.axis().map(|axis| 1.0 + axis.abs());
+                let sides = [x / m.x_axis.x, y / m.y_axis.y];
                 let depths = [(1.0 - m.w_axis.z) / m.z_axis.z, -m.w_axis.z / m.z_axis.z];
                 // The distance of a pixel is interpolated from the corners of its triangle.
                 sides.iter().all(|side| *side >= low)

@@ -126,11 +126,12 @@ fn region(plan: &FramePlan, bounds: PixelBox, [low, high]: [f64; 2]) -> Region {
     let (zz, zw) = (m.z_axis.z, m.w_axis.z);
     let Viewport { width, height } = plan.viewport;
     let [right, down] = plan.shift.map(|shift| f64::from(shift) / f64::from(SUBPIXELS));
+    let axis = plan.axis();
     // A pixel as x and y at w = 1; in orthographic projection, at any depth.
     let ray = |x: i32, y: i32| {
         let (x, y) = (f64::from(x) + right, f64::from(y) + down);
         let (x, y) = (x * 2.0 / width - 1.0, 1.0 - y * 2.0 / height);
-        [x / m.x_axis.x, y / m.y_axis.y]
+        [(x - axis[0]) / m.x_axis.x, (y - axis[1]) / m.y_axis.y]
     };
     let rays = [
         ray(bounds.left, bounds.top),

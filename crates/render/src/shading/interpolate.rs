@@ -131,9 +131,10 @@ impl<T: Number> Look<T> {
     pub(crate) fn new(plan: &FramePlan, draw: &Draw) -> Self {
         let (px, py) = (plan.clip_from_view.x_axis.x, plan.clip_from_view.y_axis.y);
         let Viewport { width, height } = plan.viewport;
-        // From pixels to -1..1, divided by the entries of the projection.
-        let mut x = [2.0 / width / px, -1.0 / px];
-        let mut y = [-2.0 / height / py, 1.0 / py];
+        let axis = plan.axis();
+        // From pixels to -1..1 relative to the view axis, divided by the entries of the projection.
+        let mut x = [2.0 / width / px, (-1.0 - axis[0]) / px];
+        let mut y = [-2.0 / height / py, (1.0 - axis[1]) / py];
         // A sample is offset from the centre of its pixel.
         for (ray, shift) in [&mut x, &mut y].into_iter().zip(plan.shift) {
             if shift != 0 {

@@ -18,7 +18,8 @@ pub(crate) struct Sight {
     parallel: bool,
     /// The points of the window per unit across, at distance 1 in perspective.
     points: DVec2,
-    rect: Rect,
+    /// The place of the view axis in the window.
+    axis: Pos2,
 }
 
 /// A ray through a place of the window, in view space.
@@ -34,13 +35,19 @@ impl Sight {
         let frame = scene.observer_frame(view);
         let lens = scene.selected_camera(view).lens;
         let clip = lens.clip_from_view(view.projection, size);
-        let half = DVec2::new(f64::from(rect.width()), f64::from(rect.height())) / 2.0;
+        let sides = DVec2::new(f64::from(rect.width()), f64::from(rect.height()));
+        let half = sides / 2.0;
+        #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels")]
+        let pixels = DVec2::new(size.width as f64, size.height as f64);
+        let by = (lens.principal_point(size) / pixels - 0.5) * sides;
+        #[expect(clippy::cast_possible_truncation, reason = "places on the screen are for the eye")]
+        let axis = rect.center() + vec2(by.x as f32, by.y as f32);
         Self {
             eye: frame.w_axis.truncate(),
             axes: DMat3::from_mat4(frame),
             parallel: view.projection == Projection::Orthographic,
             points: DVec2::new(clip.x_axis.x * half.x, clip.y_axis.y * half.y),
-            rect,
+            axis,
         }
     }
 
@@ -78,7 +85,7 @@ impl Sight {
         let y = -at.y / divisor * self.points.y;
         let seen = at.z < 0.0 && x.is_finite() && y.is_finite();
         let far = |x: f64| x.clamp(-1e5, 1e5) as f32;
-        seen.then(|| self.rect.center() + vec2(far(x), far(y)))
+        seen.then(|| self.axis + vec2(far(x), far(y)))
     }
 
     /// Returns the length, in view space, of one point of the window at this depth.
@@ -88,7 +95,7 @@ impl Sight {
 
     /// Returns the ray through a place of the window.
     pub(crate) fn ray(&self, at: Pos2) -> Ray {
-        let by = at - self.rect.center();
+        let by = at - self.axis;
         let across =
             DVec3::new(f64::from(by.x) / self.points.x, -f64::from(by.y) / self.points.y, 0.0);
         if self.parallel {
@@ -114,5 +121,38 @@ impl Ray {
         let normal = towards_eye - axis * axis.dot(towards_eye);
         let hit = self.on_plane(at, normal.try_normalize()?)?;
         Some((hit - at).dot(axis))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use egui::pos2;
+    use marraztu_core::scene::{Command, Item, Lens};
+
+    use super::*;
+    use crate::app::viewport::marks;
+
+    #[test]
+    fn handles_and_marks_agree_on_the_place_of_a_point_for_any_lens() {
+        let (scene, view) = marraztu_io::default_scene();
+        let mut state = State::new(scene, view);
+        let rect = Rect::from_min_size(pos2(200.0, 30.0), vec2(800.0, 600.0));
+        for (shift, pixel_aspect) in [([0.0; 2], 1.0), ([0.2, -0.3], 1.4)] {
+            let mut camera = state.scene.selected_camera(&state.view).clone();
+            camera.lens = Lens { shift, pixel_aspect, ..camera.lens };
+            let item = Item::Camera(state.view.camera, Box::new(camera));
+            Command::Replace(item).apply(&mut state.scene).unwrap();
+            let size = Size::new(800, 600);
+            let onto = marks::Projection::new(&state, rect, size);
+            let sight = Sight::new(&state, rect, size);
+            for point in [DVec3::ZERO, DVec3::new(-60.0, 20.0, 30.0)] {
+                let [mark, handle] = [onto.place(point), sight.place(sight.in_view(point))];
+                let [mark, handle] = [mark, handle].map(Option::unwrap);
+                assert!(mark.distance(handle) < 0.01, "{mark} {handle}");
+                let ray = sight.ray(mark);
+                let off = sight.in_view(point).cross(ray.along).length();
+                assert!(off < 0.1 * ray.along.length(), "{off}");
+            }
+        }
     }
 }
