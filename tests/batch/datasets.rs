@@ -81,6 +81,63 @@ fn cameras(lens: &str) -> String {
 }
 
 #[test]
+fn bop_counts_the_part_of_an_object_beyond_the_border() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let crate_of_1 = BOX.replace(".2", ".5").replace(".1", ".5").replace(".05", ".5");
+    std::fs::write(at("box.obj"), crate_of_1).unwrap();
+    let view = |name: &str, lens: &str| std::fs::write(at(name), cameras(lens)).unwrap();
+    view("cams.json", r#""w": 320, "h": 240, "fl_x": 300, "cx": 160, "cy": 120"#);
+    // The canvas of 3 x 3 pictures, in one picture.
+    view("wide.json", r#""w": 960, "h": 720, "fl_x": 300, "cx": 480, "cy": 360"#);
+    let infos = |x: f64, y: f64, z: f64, views: &str| {
+        let scene = format!(
+            r#"(version: 1, objects: [(id: 1, name: "cut", model: File(path: "box.obj"), placement:
+            ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0), ({x}, {y}, {z}, 1.0))
+            )], cameras: [(id: 2, name: "camera 1", eye: (0.0, 0.0, 6.0))],
+            lights: [(id: 3, name: "ambient", slot: 0, kind: Ambient)],
+            view: (object: Some(1), camera: 2))"#
+        );
+        std::fs::write(at("cut.marraztu"), scene).unwrap();
+        let bop = ["batch", "cut.marraztu", "--views", views, "--dataset", "bop", "--out", "b"];
+        ends_with(0, folder.path(), &[&bop[..], &["--samples", "1"]].concat());
+        let info = json(&at("b/000000/scene_gt_info.json"))["0"][0].clone();
+        std::fs::remove_dir_all(at("b")).unwrap();
+        info
+    };
+    // The case of bop_toolkit: half of the box is outside on the right.
+    let half = infos(3.2, 0.0, 0.0, "cams.json");
+    assert_eq!((&half["px_count_all"], &half["px_count_visib"]), (&4078.into(), &1810.into()));
+    assert_eq!(half["bbox_obj"], serde_json::json!([285, 93, 77, 54]));
+    assert_eq!((&half["px_count_valid"], &half["bbox_visib"][2]), (&1810.into(), &35.into()));
+    assert!((half["visib_fract"].as_f64().unwrap() - 1810.0 / 4078.0).abs() < 1e-12);
+    // On all sides, in a corner, around the picture, through the near plane, and wholly outside.
+    for (x, y, z) in [
+        (-3.1, 0.2, 0.3),
+        (0.1, 2.4, 0.0),
+        (0.0, -2.3, 0.2),
+        (2.9, -2.2, 0.1),
+        (0.1, 0.1, 5.2),
+        (0.3, 0.9, 5.4),
+        (0.4, 0.2, 5.8),
+        (5.0, 0.0, 0.0),
+        (0.0, 0.0, 0.0),
+    ] {
+        let [own, wide] = ["cams.json", "wide.json"].map(|views| infos(x, y, z, views));
+        let name = format!("{x} {y} {z}: {own} {wide}");
+        assert_eq!(own["px_count_all"], wide["px_count_visib"], "{name}");
+        if own["px_count_visib"] == 0 {
+            let none = serde_json::json!([-1, -1, -1, -1]);
+            assert_eq!((&own["bbox_obj"], &own["visib_fract"]), (&none, &0.0.into()), "{name}");
+            continue;
+        }
+        let side = |i: usize, offset: i64| wide["bbox_visib"][i].as_i64().unwrap() - offset;
+        let expected = [side(0, 320), side(1, 240), side(2, 0), side(3, 0)];
+        assert_eq!(own["bbox_obj"], serde_json::json!(expected), "{name}");
+    }
+}
+
+#[test]
 fn data_sets_have_the_calibration_of_their_cameras() {
     let folder = folder();
     let at = |name: &str| folder.path().join(name);

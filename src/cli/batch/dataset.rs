@@ -7,7 +7,8 @@
 //! * `coco`: `images/000000.png`, `panoptic/000000.png`, and the tables
 //!   `annotations/{panoptic,instances}.json`.
 //!
-//! A unit of the model is a metre; BOP has millimetres. Sources of the formats:
+//! A unit of the model is a metre; BOP has millimetres. BOP counts the part of an object beyond the
+//! border of the picture ([`masks`](super::masks)). Sources of the formats:
 //! `bop_datasets_format.md` of bop_toolkit, <https://cocodataset.org/#format-data>, and
 //! nerfstudio's page on data conventions.
 
@@ -17,11 +18,12 @@ use std::path::{Path, PathBuf};
 use glam::{DMat3, DMat4};
 use marraztu_core::accuracy::Shot;
 use marraztu_core::base::image::Size;
-use marraztu_core::scene::{Command, Item, ObjectId, Projection, UpAxis};
+use marraztu_core::scene::{Command, Item, Object, ObjectId, Projection, UpAxis};
 use marraztu_io::{self as io, LayerKind, LayerNumbers, LayerPicture, PngNumbers};
-use marraztu_render::{AxesConvention, Layer, LayerSet, NormalSpace, PictureCamera, Renderer};
+use marraztu_render::{AxesConvention, PictureCamera, Renderer};
 
 use super::jobs::Job;
+use super::masks::{Masks, Region, runs};
 use super::outcome::Fault;
 use super::rows::Rows;
 use super::template::{Fields, stem};
@@ -99,55 +101,12 @@ pub(super) struct DatasetObject {
     pub(super) camera_from_model: DMat4,
     /// The visible pixels.
     pub(super) visible: Region,
-    /// The pixels that the object would cover alone.
+    /// The number of pixels that the object would cover alone.
+    pub(super) alone: usize,
+    /// These pixels, and the ones beyond the border of the picture.
     pub(super) whole: Region,
     /// The runs of hidden and visible pixels, column by column.
     pub(super) runs: Vec<usize>,
-}
-
-/// The number of pixels of a mask, and the box around them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Region {
-    pub(super) count: usize,
-    /// The left column, the upper row, width and height; -1 without a pixel.
-    pub(super) bounds: [i64; 4],
-}
-
-impl Region {
-    fn of(size: Size, mask: &[bool]) -> Self {
-        let (mut count, mut low, mut high) = (0, [i64::MAX; 2], [i64::MIN; 2]);
-        for (i, _) in mask.iter().enumerate().filter(|(_, is_set)| **is_set) {
-            let at = [i % size.width, i / size.width].map(|at| i64::try_from(at).unwrap_or(0));
-            count += 1;
-            for axis in 0..2 {
-                low[axis] = low[axis].min(at[axis]);
-                high[axis] = high[axis].max(at[axis]);
-            }
-        }
-        if count == 0 {
-            return Self { count, bounds: [-1; 4] };
-        }
-        let [width, height] = [0, 1].map(|axis| high[axis] - low[axis] + 1);
-        Self { count, bounds: [low[0], low[1], width, height] }
-    }
-}
-
-/// Returns the runs of unset and set pixels, column by column, as in COCO.
-fn runs(size: Size, mask: &[bool]) -> Vec<usize> {
-    let (mut runs, mut last) = (vec![0], false);
-    for x in 0..size.width {
-        for y in 0..size.height {
-            let is_set = mask[y * size.width + x];
-            if is_set != last {
-                runs.push(0);
-                last = is_set;
-            }
-            if let Some(run) = runs.last_mut() {
-                *run += 1;
-            }
-        }
-    }
-    runs
 }
 
 /// A file of a data set.
@@ -161,48 +120,30 @@ pub(super) fn image(
     (job, shot): (&Job, &Shot),
     wanted: &(dyn Fn() -> bool + Sync),
 ) -> Result<(Vec<File>, DatasetImage), Fault> {
-    let mut ids_of = |shot: &Shot| -> Result<Vec<i32>, Fault> {
-        let set = LayerSet::default().with(Layer::Object);
-        let layers = renderer.layers_while(shot, set, NormalSpace::Camera, wanted);
-        let layers = layers.map_err(|_cancelled| Fault::Cancelled)?;
-        Ok(layers.ids(Layer::Object).to_vec())
-    };
-    let (camera, size) = (PictureCamera::of(shot), shot.size);
-    let all = ids_of(shot)?;
-    let shown: Vec<ObjectId> =
-        shot.scene.objects.iter().filter(|it| it.1.visible).map(|it| it.0).collect();
+    let mut masks = Masks { renderer, wanted };
+    let camera = PictureCamera::of(shot);
+    let all = masks.ids(shot)?;
+    let shown = || shot.scene.objects.iter().filter(|(_, object)| object.visible);
+    let is_only = shown().count() == 1;
     let (mut objects, mut files) = (Vec::new(), Vec::new());
-    for (number, object) in shown.iter().enumerate() {
-        let Some(own) = shot.scene.objects.get(*object) else { continue };
-        let id = shot.scene.objects.position(*object).map_or(0, |at| at + 1);
+    for (number, (object, own)) in shown().enumerate() {
+        let id = shot.scene.objects.position(object).map_or(0, |at| at + 1);
         let id = i32::try_from(id).unwrap_or(i32::MAX);
-        let is_own = |ids: &[i32]| -> Vec<bool> { ids.iter().map(|other| *other == id).collect() };
-        let visible = is_own(&all);
-        let whole = match shown.len() {
-            1 => visible.clone(),
-            _ => is_own(&ids_of(&alone(shot, *object))?),
-        };
-        let file = own.model.source.as_deref();
-        let model = file.map_or_else(|| PathBuf::from(&own.name), Path::to_owned);
-        let camera_from_model = camera.camera_from_world(AxesConvention::OpenCv)
-            * own.world_from_object(shot.view.time)
-            * upright(own.model.options.up);
+        let visible: Vec<bool> = all.iter().map(|other| *other == id).collect();
+        let mut described = DatasetObject::new(shot, &camera, (id, own), &visible);
         if dataset == Dataset::Bop {
-            rotation(camera_from_model).ok_or_else(|| {
+            rotation(described.camera_from_model).ok_or_else(|| {
                 Fault::Input(format!("{} is scaled or mirrored: BOP has rotations only", own.name))
             })?;
+            let alone = if is_only { shot.clone() } else { alone(shot, object) };
+            let whole = if is_only { visible.clone() } else { masks.of(&alone, id)? };
+            described.alone = whole.iter().filter(|is_set| **is_set).count();
+            described.whole = masks.beyond_the_border(&alone, &camera, (own, id), &whole)?;
             for (kind, mask) in MASKS.into_iter().zip([&whole, &visible]) {
-                files.push((mask_path(job, kind, number), mask_png(size, mask)?));
+                files.push((mask_path(job, kind, number), mask_png(shot.size, mask)?));
             }
         }
-        objects.push(DatasetObject {
-            id,
-            model,
-            camera_from_model,
-            visible: Region::of(size, &visible),
-            whole: Region::of(size, &whole),
-            runs: runs(size, &visible),
-        });
+        objects.push(described);
     }
     let depth_scale = job.options().layers.png().depth_scale;
     Ok((files, DatasetImage { camera, depth_scale, objects }))
@@ -277,11 +218,35 @@ pub(super) fn remove_masks(job: &Job, objects: usize) {
     }
 }
 
+impl DatasetObject {
+    /// Describes an object by its visible pixels.
+    fn new(
+        shot: &Shot,
+        camera: &PictureCamera,
+        (id, object): (i32, &Object),
+        mask: &[bool],
+    ) -> Self {
+        let file = object.model.source.as_deref();
+        let visible = Region::of(shot.size, mask);
+        Self {
+            id,
+            model: file.map_or_else(|| PathBuf::from(&object.name), Path::to_owned),
+            camera_from_model: camera.camera_from_world(AxesConvention::OpenCv)
+                * object.world_from_object(shot.view.time)
+                * upright(object.model.options.up),
+            visible,
+            alone: visible.count,
+            whole: visible,
+            runs: runs(shot.size, mask),
+        }
+    }
+}
+
 /// Returns the shot of one object, with all others hidden.
 fn alone(shot: &Shot, object: ObjectId) -> Shot {
     let mut alone = shot.clone();
     for (id, other) in shot.scene.objects.iter().filter(|(id, _)| *id != object) {
-        let hidden = marraztu_core::scene::Object { visible: false, ..other.clone() };
+        let hidden = Object { visible: false, ..other.clone() };
         // The object is there, so it can be replaced.
         let _ = Command::Replace(Item::Object(id, Box::new(hidden))).apply(&mut alone.scene);
     }
@@ -316,21 +281,6 @@ pub(super) fn nine(matrix: DMat3) -> [f64; 9] {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_mask_has_a_box_and_runs_of_columns() {
-        let size = Size::new(4, 3);
-        #[rustfmt::skip]
-        let mask = [
-            0, 0, 0, 0,
-            0, 1, 1, 0,
-            0, 0, 1, 1,
-        ].map(|bit| bit == 1);
-        assert_eq!(Region::of(size, &mask), Region { count: 4, bounds: [1, 1, 3, 2] });
-        assert_eq!(runs(size, &mask), [4, 1, 2, 2, 2, 1]);
-        assert_eq!(runs(size, &[true; 12]), [0, 12]);
-        assert_eq!(Region::of(size, &[false; 12]).bounds, [-1; 4]);
-    }
 
     #[test]
     fn only_rotations_are_poses_of_bop() {

@@ -16,6 +16,7 @@ mod dataset;
 mod digest;
 mod jobs;
 pub(super) mod list;
+mod masks;
 mod meter;
 mod options;
 mod outcome;

@@ -236,12 +236,14 @@ fn bop_entries(image: &DatasetImage, gap: &mut dyn FnMut(&DatasetObject) -> Stri
     let poses: Value = image.objects.iter().map(pose).collect();
     #[expect(clippy::cast_precision_loss, reason = "fewer than 2^53 pixels")]
     let info = |object: &DatasetObject| {
-        let DatasetObject { visible, whole, .. } = object;
+        let DatasetObject { visible, alone, whole, .. } = object;
+        // An object that nobody sees has no box: calc_gt_info.py of bop_toolkit.
+        let bounds = if visible.count > 0 { whole.bounds } else { visible.bounds };
         json!({
-            "bbox_obj": whole.bounds,
+            "bbox_obj": bounds,
             "bbox_visib": visible.bounds,
             "px_count_all": whole.count,
-            "px_count_valid": whole.count,
+            "px_count_valid": alone,
             "px_count_visib": visible.count,
             "visib_fract": visible.count as f64 / whole.count.max(1) as f64,
         })
