@@ -15,6 +15,7 @@ mod compare;
 mod explain;
 mod export;
 mod failure;
+mod fixed_lights;
 mod info;
 #[cfg(feature = "desktop")]
 mod keys;

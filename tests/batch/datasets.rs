@@ -174,6 +174,80 @@ fn data_sets_have_the_calibration_of_their_cameras() {
     assert!(pixels() == first);
 }
 
+/// Returns the colour at the middle of each side of a cube from -1 to 1, in each picture of a NeRF
+/// data set that sees it.
+fn colors_of_sides(folder: &Path) -> Vec<Vec<[u8; 3]>> {
+    let numbers = |json: &serde_json::Value| -> Vec<f64> {
+        json.as_array().unwrap().iter().map(|number| number.as_f64().unwrap()).collect()
+    };
+    let mut sides = vec![Vec::new(); 6];
+    for frame in json(&folder.join("transforms.json"))["frames"].as_array().unwrap() {
+        let picture = samples(&folder.join(frame["file_path"].as_str().unwrap())).into_rgb8();
+        let w2c: Vec<Vec<f64>> =
+            frame["opencv"]["w2c"].as_array().unwrap().iter().map(numbers).collect();
+        for (i, side) in sides.iter_mut().enumerate() {
+            let mut middle = [0.0, 0.0, 0.0, 1.0];
+            middle[i / 2] = if i % 2 == 0 { 1.0 } else { -1.0 };
+            let at = |row: usize| (0..4).map(|j| w2c[row][j] * middle[j]).sum::<f64>();
+            let [x, y, z] = [at(0), at(1), at(2)];
+            // The normal equals the position of the middle.
+            let turn = |row: usize| (0..3).map(|j| w2c[row][j] * middle[j]).sum::<f64>();
+            let facing = -(turn(0) * x + turn(1) * y + turn(2) * z) / x.hypot(y).hypot(z);
+            if facing > 0.2 {
+                let pixel = |name: &str, centre: &str, aside: f64| {
+                    let [focal, centre] = [name, centre].map(|name| frame[name].as_f64().unwrap());
+                    (focal * aside / z + centre) as u32
+                };
+                side.push(picture.get_pixel(pixel("fl_x", "cx", x), pixel("fl_y", "cy", y)).0);
+            }
+        }
+    }
+    sides
+}
+
+#[test]
+fn a_matte_side_has_one_colour_in_all_views_of_a_data_set() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let cube = BOX.replace(".2", "1").replace(".1", "1").replace(".05", "1");
+    std::fs::write(at("cube.obj"), format!("mtllib cube.mtl\nusemtl matte\n{cube}")).unwrap();
+    let matte = "newmtl matte\nKa 0.1 0.1 0.1\nKd 0.8 0.8 0.8\nKs 0 0 0\nillum 1\n";
+    std::fs::write(at("cube.mtl"), matte).unwrap();
+    // A scene with a lamp on its camera.
+    let scene = r#"(version: 1, objects: [(id: 1, name: "cube", model: File(path: "cube.obj"))],
+        cameras: [(id: 2, name: "camera 1", eye: (0.0, 0.0, 9.0))],
+        lights: [(id: 3, name: "ambient", slot: 0, kind: Ambient, color: (40, 40, 40)),
+            (id: 4, name: "lamp", slot: 1, kind: Spot(owner: SelectedCamera, half_aperture: 60.0,
+                exponent: 0.0), attenuation: (constant: 1.0, linear: 0.0, quadratic: 0.0))],
+        view: (object: Some(1), camera: 2))"#;
+    std::fs::write(at("lamp.marraztu"), scene).unwrap();
+    // The largest range of a side's colours over all views.
+    let range = |model: &str, more: &[&str]| {
+        let base = ["batch", model, "--views", "fibonacci:12:5", "--size", "96"];
+        let dataset = ["--samples", "1", "--dataset", "nerf", "--out", "nerf"];
+        let (_, notes) = ends_with(0, folder.path(), &[&base[..], &dataset, more].concat());
+        let stem = Path::new(model).file_stem().unwrap();
+        let sides = colors_of_sides(&at("nerf").join(stem));
+        std::fs::remove_dir_all(at("nerf")).unwrap();
+        assert!(sides.iter().all(|side| side.len() >= 2), "{sides:?}");
+        let ranges = sides.iter().map(|side| {
+            let greens = side.iter().map(|color| color[1]);
+            greens.clone().max().unwrap() - greens.min().unwrap()
+        });
+        (ranges.max().unwrap(), notes)
+    };
+    for model in ["cube.obj", "lamp.marraztu"] {
+        let (fixed, notes) = range(model, &[]);
+        assert!(fixed <= 2, "{model}: {fixed}");
+        assert!(notes.contains("the lights are the same in all views"), "{notes}");
+        let (following, notes) = range(model, &["--lights-follow-camera"]);
+        assert!(following > 20, "{model}: {following}");
+        assert!(!notes.contains("the lights are"), "{notes}");
+        // The exposure stays, too.
+        assert!(range(model, &["--exposure", "fit"]).0 <= 2, "{model}");
+    }
+}
+
 #[test]
 fn the_segments_of_coco_are_those_of_the_pixels() {
     let folder = folder();

@@ -79,8 +79,12 @@ pub(super) struct Stamper {
 }
 
 impl Stamper {
-    pub(super) fn new() -> Self {
+    /// Creates a stamper for pictures with lights that stay in all views, or that follow the view.
+    pub(super) fn new(has_fixed_lights: bool) -> Self {
         let mut program = format!("marraztu {}\n", env!("CARGO_PKG_VERSION"));
+        if has_fixed_lights {
+            program.push_str("fixed lights\n");
+        }
         for (name, sum) in pictures::listed() {
             let _ = writeln!(program, "{sum:016x} {name}");
         }
@@ -197,7 +201,7 @@ mod tests {
             let jobs = jobs_of(&[at(name).to_str().unwrap()]).unwrap();
             Arc::clone(&jobs[0].row)
         };
-        let hash = || Stamper::new().known(&row("a.obj")).unwrap();
+        let hash = || Stamper::new(false).known(&row("a.obj")).unwrap();
         std::fs::write(at("a.obj"), "mtllib a.mtl\nv 0 0 0\n").unwrap();
         let mut all = vec![hash().all];
         for (name, text) in [
@@ -216,6 +220,6 @@ mod tests {
         all.sort();
         all.dedup();
         assert_eq!(all.len(), 6, "every change shows");
-        assert!(Stamper::new().known(&row("absent.obj")).is_none());
+        assert!(Stamper::new(false).known(&row("absent.obj")).is_none());
     }
 }

@@ -125,6 +125,10 @@ pub(crate) struct Batch {
     #[arg(value_parser = choice(&Dataset::ALL))]
     #[arg(conflicts_with_all = ["layers", "ids", "format", "shard", "resume", "sheet"])]
     dataset: Option<Dataset>,
+    /// Place the lights of a data set for each view [default: the same lights in all views of a
+    /// model, since training assumes light that stays]
+    #[arg(long, requires = "dataset")]
+    lights_follow_camera: bool,
     /// Also write contact sheets with labels, of these columns and rows
     #[arg(long, value_name = "COLSxROWS", value_parser = grid, conflicts_with = "shard")]
     sheet: Option<Grid>,
@@ -207,6 +211,9 @@ pub(super) fn batch(arguments: Box<Batch>) -> Result<(), Failure> {
         write_sheets(grid, &arguments.sheets, (studio.plan(), &jobs), &wanted)?;
     }
     tell(&counts, meter.unchanged(), meter.rate());
+    if arguments.has_fixed_lights() {
+        note(&"the lights are the same in all views: --lights-follow-camera lights each view");
+    }
     if repaired > 0 {
         let list = if arguments.report.is_some() { "the report" } else { "--report" };
         note(&format_args!("{repaired} of the pictures have findings: {list} lists them"));
@@ -270,6 +277,11 @@ impl<'a> Results<'a> {
 }
 
 impl Batch {
+    /// Returns whether the lights of a model stay in all of its views.
+    const fn has_fixed_lights(&self) -> bool {
+        self.dataset.is_some() && !self.lights_follow_camera
+    }
+
     /// Returns the number of pictures that are drawn at a time.
     fn threads(&self) -> usize {
         let cores = || std::thread::available_parallelism().map_or(1, usize::from);

@@ -33,6 +33,7 @@ use super::report::shown;
 use super::rows::Row;
 use crate::cli::cameras::CameraFrame;
 use crate::cli::failure::Failure;
+use crate::cli::fixed_lights::look_with_fixed_lights;
 use crate::cli::layers::{LayerContent, LayerFile};
 use crate::cli::render::NO_MEMORY;
 use crate::cli::render::look;
@@ -79,8 +80,8 @@ impl Studio {
             next: AtomicUsize::new(0),
             stopped: AtomicBool::new(false),
             cache: StageCache::new(arguments.memory),
+            stamper: Stamper::new(arguments.has_fixed_lights()),
             arguments,
-            stamper: Stamper::new(),
             large: Mutex::default(),
             folders: Mutex::default(),
             reading: Mutex::default(),
@@ -368,6 +369,10 @@ impl Attempt<'_> {
         let options = job.options();
         let failed = |failure: Failure| Fault::of(&failure);
         let aim = job.camera().aim.at(job.size());
+        let look = match self.studio.arguments.has_fixed_lights() {
+            true => look_with_fixed_lights,
+            false => look,
+        };
         look(&mut stage, &options.scene.seeing, &aim).map_err(failed)?;
         if let Some(dataset) = self.studio.arguments.dataset {
             dataset.check_projection(stage.view.projection)?;
