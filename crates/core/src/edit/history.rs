@@ -6,18 +6,45 @@
 //! Looking around is not a step. Instead, steps that do not move the camera adopt its new pose, so
 //! undoing them does not move the view.
 
+use std::collections::HashSet;
+
 use super::{Gesture, Selected};
 use crate::scene::{
-    Camera, CameraId, CameraMode, Command, CommandError, Item, ItemId, Lens, Pose, Scene, Tracked,
+    Camera, CameraId, CameraMode, Command, CommandError, Item, ItemId, Lens, Pose, Scene, Target,
+    Tracked,
 };
 
-#[derive(Debug)]
+#[derive(Debug, Default)]
 struct Step {
     label: String,
-    /// The commands, in reverse order of application.
+    /// The commands without batches, in reverse order of application.
     commands: Vec<Command>,
+    /// The indices of the commands that concern a camera. Looking around updates only these, since
+    /// a step may change thousands of objects.
+    of_cameras: Vec<usize>,
     /// The selection before and after the step, if it was recorded.
     selected: Option<[Selected; 2]>,
+}
+
+impl Step {
+    /// Adds the inverse of a change, which is applied before the commands in the step. Commands
+    /// with a target in `set` are dropped, since a command of the step sets the same value later.
+    /// Thus the step leads back to the state before a gesture, without its intermediate states.
+    fn add(&mut self, back: Command, set: &mut HashSet<Target>) {
+        if let Command::Batch(commands) = back {
+            return commands.into_iter().rev().for_each(|command| self.add(command, set));
+        }
+        match back.target() {
+            Some(target) if !set.insert(target) => return,
+            Some(_) => {}
+            // Other commands change which items exist, and where.
+            None => set.clear(),
+        }
+        if concerns_camera(&back) {
+            self.of_cameras.push(self.commands.len());
+        }
+        self.commands.push(back);
+    }
 }
 
 /// The steps done and undone. Only the history writes the scene, since any other change would
@@ -29,6 +56,8 @@ pub struct History {
     position: usize,
     /// The gesture of the last step, while it may continue.
     open: Gesture,
+    /// The targets that the last step sets, if they still exist when it is undone.
+    set: HashSet<Target>,
     /// The gesture that moves the view, and the views of the cameras before it.
     looking: (Gesture, Vec<(CameraId, Looking)>),
     /// The position at which the scene was saved; `None` if no step leads there any more.
@@ -43,9 +72,10 @@ impl Default for History {
 
 impl History {
     /// Creates a history without steps, for a scene that counts as saved.
-    pub const fn new() -> Self {
-        let looking = (Gesture::Whole, Vec::new());
-        Self { steps: Vec::new(), position: 0, open: Gesture::Whole, looking, saved: Some(0) }
+    pub fn new() -> Self {
+        let (open, looking) = (Gesture::Whole, (Gesture::Whole, Vec::new()));
+        let (steps, set) = (Vec::new(), HashSet::new());
+        Self { steps, position: 0, open, set, looking, saved: Some(0) }
     }
 
     /// Applies a command, and records the step for undoing it under `label`. In a gesture, the last
@@ -64,19 +94,17 @@ impl History {
         self.steps.truncate(self.position);
         match self.steps.last_mut() {
             Some(step) if gesture != Gesture::Whole && gesture == self.open => {
-                // The step leads back to the state before the gesture. Intermediate states are not
-                // recorded.
-                if !step.commands.last().is_some_and(|last| last.overwrites(&back)) {
-                    step.commands.push(back);
-                }
+                step.add(back, &mut self.set);
                 // The last label describes the whole gesture.
                 label.clone_into(&mut step.label);
                 self.saved = self.saved.filter(|saved| *saved < self.position);
             }
             _ => {
                 self.saved = self.saved.filter(|saved| *saved <= self.position);
-                let label = label.to_owned();
-                self.steps.push(Step { label, commands: vec![back], selected: None });
+                self.set.clear();
+                let mut step = Step { label: label.to_owned(), ..Step::default() };
+                step.add(back, &mut self.set);
+                self.steps.push(step);
                 self.position += 1;
             }
         }
@@ -124,8 +152,10 @@ impl History {
             let mut follower =
                 Follower { id, pose: Some(before.pose.clone()), lens: Some(before.lens) };
             // The nearest step comes first; the last command of a step is applied first.
-            for command in steps.flat_map(|step: &mut Step| step.commands.iter_mut().rev()) {
-                follower.pass(command, after);
+            for Step { commands, of_cameras, .. } in steps {
+                for at in of_cameras.iter().rev() {
+                    follower.pass(&mut commands[*at], after);
+                }
             }
         }
     }
@@ -239,6 +269,8 @@ impl History {
                 // The batch returns commands in the order of application; a step stores the
                 // reverse.
                 back.reverse();
+                let cameras = (0..).zip(&back).filter(|(_, command)| concerns_camera(command));
+                step.of_cameras = cameras.map(|(at, _)| at).collect();
                 step.commands = back;
                 Some(step.label.clone())
             }
@@ -250,6 +282,16 @@ impl History {
             }
         }
     }
+}
+
+/// Returns whether a command inserts, removes or replaces a camera.
+const fn concerns_camera(command: &Command) -> bool {
+    matches!(
+        command,
+        Command::Insert { item: Item::Camera(..), .. }
+            | Command::Remove(ItemId::Camera(_))
+            | Command::Replace(Item::Camera(..))
+    )
 }
 
 /// The view of a camera: its pose and lens.
@@ -296,8 +338,8 @@ impl Follower {
             {
                 (self.pose, self.lens) = (None, None);
             }
-            Command::Batch(commands) => commands.iter_mut().for_each(|it| self.pass(it, after)),
-            Command::Insert { .. }
+            Command::Batch(_)
+            | Command::Insert { .. }
             | Command::Remove(_)
             | Command::Replace(_)
             | Command::Reorder { .. }
@@ -344,5 +386,109 @@ fn cameras_of(command: &Command, ids: &mut Vec<CameraId>) -> bool {
         | Command::Lock { .. }
         | Command::Background(_)
         | Command::NextId(_) => false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use glam::DVec3;
+
+    use super::*;
+    use crate::base::Shared;
+    use crate::base::color::Color;
+    use crate::scene::{
+        CameraId, List, MaterialChoice, Mesh, Model, Object, ObjectId, Objects, Scene,
+    };
+
+    const OBJECTS: u32 = 100;
+
+    /// Creates a scene of many objects and one camera.
+    fn scene() -> Scene {
+        let model = Shared::new(Model::of_mesh("box", Mesh::placeholder(1.0)));
+        let object = Object::new(model.clone(), MaterialChoice::File);
+        let camera = Camera::new("camera", model, MaterialChoice::File, DVec3::ZERO);
+        let objects: Objects = (0..OBJECTS).map(|id| (ObjectId(id), object.clone())).collect();
+        Scene {
+            objects,
+            cameras: [(CameraId(OBJECTS), camera)].into_iter().collect(),
+            lights: List::default(),
+            background: Color([0; 3]),
+            next_id: OBJECTS + 1,
+            locked: BTreeSet::new(),
+        }
+    }
+
+    /// Moves the objects with these ids by one unit.
+    fn nudge(scene: &Scene, ids: impl Iterator<Item = u32>) -> Command {
+        let moved = |id: u32| {
+            let mut object = scene.objects.get(ObjectId(id)).unwrap().clone();
+            let mut placement = *object.placement.now();
+            placement.w_axis.x += 1.0;
+            object.placement = Tracked::new(placement);
+            Command::Replace(Item::Object(ObjectId(id), Box::new(object)))
+        };
+        Command::Batch(ids.map(moved).collect())
+    }
+
+    #[test]
+    fn a_gesture_keeps_one_command_for_each_object_whatever_the_order_of_its_changes() {
+        let mut scene = scene();
+        let start = scene.clone();
+        let mut history = History::new();
+        for i in 0..50 {
+            let command = match i % 3 {
+                0 => nudge(&scene, 0..OBJECTS),
+                1 => nudge(&scene, (0..OBJECTS).rev()),
+                _ => nudge(&scene, (0..OBJECTS).step_by(2)),
+            };
+            history.perform(&mut scene, command, Gesture::Part(1), "Move").unwrap();
+        }
+        assert_eq!(history.steps[0].commands.len(), OBJECTS as usize);
+        history.undo(&mut scene).unwrap();
+        assert_eq!(scene, start);
+    }
+
+    #[test]
+    fn looking_around_visits_no_command_of_an_object() {
+        let mut scene = scene();
+        let mut history = History::new();
+        for _ in 0..50 {
+            let command = nudge(&scene, 0..OBJECTS);
+            history.perform(&mut scene, command, Gesture::Whole, "Move").unwrap();
+        }
+        let id = CameraId(OBJECTS);
+        let named = |scene: &Scene, name: &str| {
+            let camera = scene.cameras.get(id).unwrap().clone();
+            Command::Replace(Item::Camera(id, Box::new(Camera { name: name.to_owned(), ..camera })))
+        };
+        let both = Command::Batch(vec![
+            nudge(&scene, 0..OBJECTS),
+            named(&scene, "b"),
+            nudge(&scene, 0..9),
+        ]);
+        history.perform(&mut scene, both, Gesture::Whole, "Rename").unwrap();
+        let visited = |history: &History| -> usize {
+            history.steps.iter().map(|step| step.of_cameras.len()).sum()
+        };
+        assert_eq!(visited(&history), 1);
+        // The camera is found in the inverse, too, which has the opposite order.
+        let looked = |scene: &Scene, x: f64| {
+            let mut camera = scene.cameras.get(id).unwrap().clone();
+            let pose = Pose::facing_minus_z(DVec3::new(x, 0.0, 0.0));
+            camera.pose = Tracked::new(pose);
+            Command::Replace(Item::Camera(id, Box::new(camera)))
+        };
+        for x in 1..4 {
+            let command = looked(&scene, f64::from(x));
+            history.navigate(&mut scene, command, Gesture::Whole).unwrap();
+            let way = [History::undo, History::redo][usize::from(x % 2 == 0)];
+            way(&mut history, &mut scene).unwrap();
+            let camera = scene.cameras.get(id).unwrap();
+            assert_eq!(camera.pose.now().eye.x, f64::from(x));
+            assert_eq!(camera.name, ["b", "camera"][usize::from(x % 2 == 1)]);
+            assert_eq!(visited(&history), 1);
+        }
     }
 }

@@ -43,6 +43,19 @@ pub enum Command {
     Batch(Vec<Self>),
 }
 
+/// A value of a scene that a command sets as a whole.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Target {
+    /// An item, without its position in its list.
+    Item(ItemId),
+    /// Whether an item is locked.
+    Lock(ItemId),
+    /// The background.
+    Background,
+    /// The id of the next new item.
+    NextId,
+}
+
 /// An item of one of the lists, with its id.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Item {
@@ -142,17 +155,15 @@ impl Command {
         }
     }
 
-    /// Returns whether `self`, applied right after `earlier`, overwrites everything that `earlier`
-    /// set.
-    pub fn overwrites(&self, earlier: &Self) -> bool {
-        match (self, earlier) {
-            (Self::Replace(a), Self::Replace(b)) => a.id() == b.id(),
-            (Self::Lock { id: a, .. }, Self::Lock { id: b, .. }) => a == b,
-            (Self::Background(_), Self::Background(_)) => true,
-            (Self::Batch(a), Self::Batch(b)) => {
-                a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.overwrites(b))
-            }
-            _ => false,
+    /// Returns the value that the command sets, whatever it was before; `None` if the command
+    /// changes which items exist or their order, and for batches.
+    pub const fn target(&self) -> Option<Target> {
+        match self {
+            Self::Replace(item) => Some(Target::Item(item.id())),
+            Self::Lock { id, .. } => Some(Target::Lock(*id)),
+            Self::Background(_) => Some(Target::Background),
+            Self::NextId(_) => Some(Target::NextId),
+            Self::Insert { .. } | Self::Remove(_) | Self::Reorder { .. } | Self::Batch(_) => None,
         }
     }
 }

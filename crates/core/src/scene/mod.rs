@@ -26,7 +26,7 @@ mod view;
 pub use anchor::{Aim, Anchor, AnchorMut, LightOrigin, Orbit, SpotOwner};
 pub use bounds::Bounds;
 pub use camera::{Camera, CameraMode, Intrinsics, Lens, Pose};
-pub use command::{Command, CommandError, Item};
+pub use command::{Command, CommandError, Item, Target};
 pub use light::{Attenuation, Light};
 pub use light_kind::{
     CONCENTRATION, HALF_APERTURE, LIGHT_NUMBERS, LightKind, LightKindInfo, LightNumber,
