@@ -44,17 +44,24 @@ pub(super) struct StageCache {
 #[derive(Debug, Default)]
 struct Entries {
     map: BTreeMap<Key, Entry>,
+    /// The keys by the time of their last request.
+    order: BTreeMap<u64, Key>,
     /// The number of requests, as a clock.
     clock: u64,
+    /// The sum over all entries.
+    bytes: usize,
 }
 
 #[derive(Debug, Default)]
 struct Entry {
     loaded: Arc<Mutex<Option<Loaded>>>,
-    /// The size of the model, when it is loaded.
+    /// The size of the model or of its error; 0 until it is loaded.
     bytes: usize,
     used: u64,
 }
+
+/// The size at which the error of a model that cannot be loaded is counted.
+const BYTES_OF_ERROR: usize = 1024;
 
 impl StageCache {
     pub(super) fn new(most: usize) -> Self {
@@ -67,11 +74,7 @@ impl StageCache {
         let key = (row.file.clone(), row.kind.parsed.model_text.clone());
         let slot = {
             let mut entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
-            entries.clock += 1;
-            let used = entries.clock;
-            let entry = entries.map.entry(key.clone()).or_default();
-            entry.used = used;
-            Arc::clone(&entry.loaded)
+            entries.request(&key)
         };
         let mut slot = slot.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(loaded) = &*slot {
@@ -87,8 +90,10 @@ impl StageCache {
         }
         *slot = Some(loaded.clone());
         drop(slot);
-        let bytes = loaded.as_ref().map_or(0, |loaded| bytes_of(&loaded.stage));
-        self.keep(&key, bytes);
+        let bytes = loaded.as_ref().map_or(BYTES_OF_ERROR, |loaded| bytes_of(&loaded.stage));
+        let mut entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
+        entries.keep(&key, bytes, self.most);
+        drop(entries);
         loaded
     }
 
@@ -100,24 +105,32 @@ impl StageCache {
         let size = usize::try_from(size).unwrap_or(usize::MAX);
         size.saturating_mul(GROWTH).saturating_mul(count) <= self.most
     }
+}
 
-    /// Notes the size of a new model, and drops others above the limit.
-    fn keep(&self, new: &Key, bytes: usize) {
-        let mut entries = self.entries.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(entry) = entries.map.get_mut(new) {
+impl Entries {
+    /// Returns the slot of a model, and counts the request as its last one.
+    fn request(&mut self, key: &Key) -> Arc<Mutex<Option<Loaded>>> {
+        self.clock += 1;
+        let entry = self.map.entry(key.clone()).or_default();
+        self.order.remove(&entry.used);
+        entry.used = self.clock;
+        self.order.insert(self.clock, key.clone());
+        Arc::clone(&entry.loaded)
+    }
+
+    /// Notes the size of a new model, and drops others above the limit of `most` bytes. Models that
+    /// are being loaded stay: there are at most as many as threads.
+    fn keep(&mut self, new: &Key, bytes: usize, most: usize) {
+        if let Some(entry) = self.map.get_mut(new) {
             entry.bytes = bytes;
+            self.bytes += bytes;
         }
-        loop {
-            let used: usize = entries.map.values().map(|entry| entry.bytes).sum();
-            if used <= self.most {
-                return;
-            }
-            let others = entries.map.iter().filter(|(key, entry)| *key != new && entry.bytes > 0);
-            let oldest = others.min_by_key(|(_, entry)| entry.used).map(|(key, _)| key.clone());
-            match oldest {
-                Some(key) => _ = entries.map.remove(&key),
-                None => return,
-            }
+        while self.bytes > most {
+            let is_loaded = |key: &Key| self.map.get(key).is_some_and(|entry| entry.bytes > 0);
+            let mut others = self.order.iter().filter(|(_, key)| *key != new && is_loaded(key));
+            let Some((&used, _)) = others.next() else { return };
+            let dropped = self.order.remove(&used).and_then(|key| self.map.remove(&key));
+            self.bytes -= dropped.map_or(0, |entry| entry.bytes);
         }
     }
 }
@@ -194,7 +207,10 @@ mod tests {
                 let loaded = cache.get(&job.row, &Progress::new(), &AtomicBool::new(false));
                 assert_eq!(loaded.unwrap().stage.scene.objects.len(), 1);
             }
-            assert_eq!(cache.entries.lock().unwrap().map.len(), kept, "limit {most}");
+            let entries = cache.entries.lock().unwrap();
+            assert_eq!(entries.map.len(), kept, "limit {most}");
+            assert_eq!(entries.order.len(), kept, "limit {most}");
+            assert_eq!(entries.bytes, entries.map.values().map(|entry| entry.bytes).sum());
         }
         // A model is read once: the second request does not see that the file is gone.
         let cache = StageCache::new(usize::MAX);
@@ -215,5 +231,29 @@ mod tests {
         assert_eq!(other(true, &cancelled), Err(Fault::Cancelled));
         assert_eq!(other(false, &cancelled), Err(late.clone()));
         assert_eq!(other(false, &Progress::new()), Err(late.clone()));
+    }
+
+    #[test]
+    fn models_that_cannot_be_loaded_are_dropped_like_others() {
+        let folder = tempfile::tempdir().unwrap();
+        let names: Vec<String> = (0..50)
+            .map(|i| {
+                let file = folder.path().join(format!("{i}.obj"));
+                std::fs::write(&file, "f 1 2 3\n").unwrap();
+                file.to_str().unwrap().to_owned()
+            })
+            .collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let cache = StageCache::new(10 * BYTES_OF_ERROR);
+        for job in &jobs_of(&names).unwrap() {
+            std::fs::remove_file(&job.row.file).unwrap();
+            // A second request is answered with the same error, without reading.
+            for _ in 0..2 {
+                cache.get(&job.row, &Progress::new(), &AtomicBool::new(false)).unwrap_err();
+            }
+        }
+        let entries = cache.entries.lock().unwrap();
+        assert_eq!((entries.map.len(), entries.order.len()), (10, 10));
+        assert_eq!(entries.bytes, 10 * BYTES_OF_ERROR);
     }
 }
