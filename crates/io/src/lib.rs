@@ -59,7 +59,8 @@ pub use findings::{Finding, FindingKind, joined};
 pub use fingerprint::Fingerprint;
 pub use input::Input;
 pub use keeping::{
-    Abandoned, Discarded, Helpers, Journal, MOST_RECENT, OwnFolders, Preferences, Theme, Unsaved,
+    Abandoned, Discarded, Helpers, Journal, JournalNews, MOST_RECENT, OwnFolders, Preferences, Theme,
+    Unsaved,
 };
 pub use layers::{
     ExrCamera, IdPixels, LayerKind, LayerNumbers, LayerPicture, PngNumbers, layer_npy, layer_png,

@@ -16,7 +16,8 @@ use crate::app::state::{Notice, NoticeKind, State};
 use crate::app::widgets::text::file_name;
 use marraztu_core::scene::Scene;
 use marraztu_io::{
-    self as io, Abandoned, Discarded, Fingerprint, Journal, OwnFolders, Preferences, Unsaved,
+    self as io, Abandoned, Discarded, Fingerprint, Journal, JournalNews, OwnFolders, Preferences,
+    Unsaved,
 };
 
 /// The seconds without a change after which preferences are written.
@@ -104,9 +105,12 @@ impl App {
                 let (window, settings, content) = (own.window(), *settings, *content);
                 journal.keep(Unsaved { scene, view, settings, window, file, content });
             }
-            if let Some(fault) = journal.fault() {
+            if let Some(news) = journal.news() {
                 state.notices.retain(|notice| !notice.text.starts_with(NOT_KEPT));
-                state.notices.push(Notice::new(NoticeKind::Program, format!("{NOT_KEPT}{fault}.")));
+                if let JournalNews::Failed(fault) = news {
+                    let text = format!("{NOT_KEPT}{fault}. The program keeps trying.");
+                    state.notices.push(Notice::new(NoticeKind::Program, text));
+                }
             }
         }
         let Some(keeping) = &mut self.keeping else { return };

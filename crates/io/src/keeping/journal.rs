@@ -3,6 +3,9 @@
 //! A thread writes the latest state as a scene file that refers to the models' files, and flushes
 //! it to disk. It writes at most once per [`PAUSE`], so a crash loses at most the last second of
 //! work. The file is replaced atomically: it always holds a complete scene.
+//!
+//! A state that cannot be written, for example because the disk is full, is tried again after
+//! [`RETRY`], unless a later state replaces it.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -23,6 +26,9 @@ use marraztu_core::scene::{Scene, View};
 
 /// The minimum time between two writes.
 const PAUSE: Duration = Duration::from_millis(200);
+
+/// The time after which a failed write is repeated.
+const RETRY: Duration = Duration::from_secs(if cfg!(test) { 1 } else { 5 });
 
 /// A state with unsaved changes. Clones share all large data.
 #[derive(Clone, Debug)]
@@ -58,8 +64,29 @@ struct Desk {
     replaced: Vec<Abandoned>,
     busy: bool,
     ended: bool,
-    /// The reason why the last state could not be written.
-    fault: Option<String>,
+    /// The last state if it could not be written, to try again.
+    failed: Option<Box<Unsaved>>,
+    /// Whether the last write failed, which was reported.
+    failing: bool,
+    news: Option<JournalNews>,
+}
+
+/// What the user should know about the journal.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum JournalNews {
+    /// The state cannot be written, for this reason. Further failures are not reported until a
+    /// state was written.
+    Failed(String),
+    /// The journal is up to date again after a failure.
+    Restored,
+}
+
+impl Desk {
+    fn succeeded(&mut self) {
+        if std::mem::replace(&mut self.failing, false) {
+            self.news = Some(JournalNews::Restored);
+        }
+    }
 }
 
 #[derive(Debug)]
@@ -77,31 +104,43 @@ impl Shared {
     /// Does what the desk asks for.
     fn follow(&self, mut desk: MutexGuard<'_, Desk>) {
         let next = std::mem::take(&mut desk.next);
+        // Every later task replaces the state that failed.
+        desk.failed = None;
         desk.busy = true;
         drop(desk);
-        let result = match next {
-            Next::Nothing => Ok(false),
-            Next::Write(state) => write(&self.slot.work, &state).map(|()| true),
+        let replaced = match next {
+            Next::Nothing => Vec::new(),
+            Next::Write(state) => self.write(state),
             Next::Remove => {
                 // The file may not exist.
                 let _ = std::fs::remove_file(&self.slot.work);
-                Ok(false)
-            }
-        };
-        let mut desk = self.desk();
-        // Deleting work taken over is only safe after a successful write.
-        let replaced = match result {
-            Ok(true) => std::mem::take(&mut desk.replaced),
-            Ok(false) => Vec::new(),
-            Err(fault) => {
-                desk.fault = Some(fault);
+                self.desk().succeeded();
                 Vec::new()
             }
         };
-        desk.busy = false;
-        drop(desk);
+        self.desk().busy = false;
         self.changed.notify_all();
         replaced.into_iter().for_each(Abandoned::remove);
+    }
+
+    /// Writes a state. Returns the work to delete: deleting work taken over is only safe after a
+    /// successful write.
+    fn write(&self, state: Box<Unsaved>) -> Vec<Abandoned> {
+        let result = write(&self.slot.work, &state);
+        let mut desk = self.desk();
+        match result {
+            Ok(()) => {
+                desk.succeeded();
+                std::mem::take(&mut desk.replaced)
+            }
+            Err(fault) => {
+                if !std::mem::replace(&mut desk.failing, true) {
+                    desk.news = Some(JournalNews::Failed(fault));
+                }
+                desk.failed = Some(state);
+                Vec::new()
+            }
+        }
     }
 }
 
@@ -176,12 +215,12 @@ impl Journal {
         self.shared.desk().replaced.push(taken_over);
     }
 
-    /// Returns the reason why the last state could not be written, once.
-    pub fn fault(&self) -> Option<String> {
-        self.shared.desk().fault.take()
+    /// Returns news about writing, each once.
+    pub fn news(&self) -> Option<JournalNews> {
+        self.shared.desk().news.take()
     }
 
-    /// Waits until everything is on disk.
+    /// Waits until the last state was written, or has failed for now.
     pub fn wait(&self) {
         let mut desk = self.shared.desk();
         while desk.busy || !matches!(desk.next, Next::Nothing) {
@@ -219,14 +258,24 @@ fn keep(shared: &Shared) {
     let mut rested = Instant::now();
     loop {
         let mut desk = shared.desk();
+        let retry = Instant::now() + RETRY;
         while matches!(desk.next, Next::Nothing) && !desk.ended {
-            desk = shared.changed.wait(desk).unwrap_or_else(PoisonError::into_inner);
+            if desk.failed.is_some() && Instant::now() >= retry {
+                break;
+            }
+            desk = if desk.failed.is_some() {
+                wait_until(shared, desk, retry)
+            } else {
+                shared.changed.wait(desk).unwrap_or_else(PoisonError::into_inner)
+            };
         }
         // States that arrive during the pause replace older ones.
         while !desk.ended && Instant::now() < rested {
-            let rest = rested.saturating_duration_since(Instant::now());
-            let waited = shared.changed.wait_timeout(desk, rest);
-            desk = waited.unwrap_or_else(PoisonError::into_inner).0;
+            desk = wait_until(shared, desk, rested);
+        }
+        let failed = desk.failed.take().filter(|_| matches!(desk.next, Next::Nothing));
+        if let Some(state) = failed {
+            desk.next = Next::Write(state);
         }
         let ended = desk.ended;
         shared.follow(desk);
@@ -237,10 +286,79 @@ fn keep(shared: &Shared) {
     }
 }
 
+/// Waits until the desk changes, at most until this time.
+fn wait_until<'a>(
+    shared: &'a Shared,
+    desk: MutexGuard<'a, Desk>,
+    time: Instant,
+) -> MutexGuard<'a, Desk> {
+    let rest = time.saturating_duration_since(Instant::now());
+    let waited = shared.changed.wait_timeout(desk, rest);
+    waited.unwrap_or_else(PoisonError::into_inner).0
+}
+
 fn write(path: &Path, state: &Unsaved) -> Result<(), String> {
     let Unsaved { scene, view, settings, window, file, content } = state;
     let text = text_with_window(path, scene, view, settings, window);
     let text = text.map_err(|error| error.to_string())?;
     let text = head(file.as_deref(), *content) + &text;
     replace(path, text.as_bytes(), Worth::Journal).map_err(|error| error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::default_scene;
+
+    fn unsaved() -> Unsaved {
+        let (scene, view) = default_scene();
+        let (settings, window) = (Settings::default(), WindowState::DEFAULT);
+        Unsaved { scene, view, settings, window, file: None, content: None }
+    }
+
+    #[test]
+    fn a_failed_write_is_reported_once_and_repeated_until_it_succeeds() {
+        let folder = tempfile::tempdir().unwrap();
+        let folders = OwnFolders::within(folder.path());
+        let journal = Journal::begin(&folders).unwrap();
+        let work = journal.shared.slot.work.clone();
+        // No file can replace a folder.
+        std::fs::create_dir(&work).unwrap();
+        std::fs::write(work.join("stranger"), "").unwrap();
+        for attempt in 0..3 {
+            journal.keep(unsaved());
+            journal.wait();
+            let told = matches!(journal.news(), Some(JournalNews::Failed(_)));
+            assert_eq!(told, attempt == 0, "{attempt}");
+        }
+        std::fs::remove_dir_all(&work).unwrap();
+        // Nothing changes any more, and the state is written all the same.
+        let late = Instant::now() + Duration::from_secs(60);
+        while !work.is_file() && Instant::now() < late {
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        assert!(work.is_file());
+        journal.wait();
+        assert_eq!(journal.news(), Some(JournalNews::Restored));
+        assert_eq!(journal.news(), None);
+        journal.end();
+    }
+
+    #[test]
+    fn a_state_that_failed_is_not_written_after_everything_was_saved() {
+        let folder = tempfile::tempdir().unwrap();
+        let folders = OwnFolders::within(folder.path());
+        let journal = Journal::begin(&folders).unwrap();
+        let work = journal.shared.slot.work.clone();
+        std::fs::create_dir(&work).unwrap();
+        std::fs::write(work.join("stranger"), "").unwrap();
+        journal.keep(unsaved());
+        journal.wait();
+        journal.all_saved();
+        journal.wait();
+        std::fs::remove_dir_all(&work).unwrap();
+        let shared = Arc::clone(&journal.shared);
+        drop(journal);
+        assert!(shared.desk().failed.is_none() && !work.exists());
+    }
 }

@@ -19,7 +19,7 @@ mod preferences;
 
 pub use abandoned::Abandoned;
 pub use discarded::Discarded;
-pub use journal::{Journal, Unsaved};
+pub use journal::{Journal, JournalNews, Unsaved};
 pub use preferences::{Helpers, MOST_RECENT, Preferences, Theme};
 
 use std::fs::{self, File, OpenOptions};
