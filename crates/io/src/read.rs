@@ -8,7 +8,7 @@ use super::error::{LFS_POINTER, LoadError, NO_MEMORY, shown};
 use super::examples::scene_text;
 use super::progress::Progress;
 
-/// The most bytes of a text of materials or a scene.
+/// The most bytes of a text of materials.
 pub(super) const MOST_WORDS: usize = 64 << 20;
 
 /// The size in bytes from which UTF-16 texts are rejected.

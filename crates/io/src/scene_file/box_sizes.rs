@@ -4,8 +4,11 @@
 //! cube of that width would look larger than the objects. Without other objects, it fills a
 //! fraction of the height that the camera sees at its distance.
 
+use std::collections::BTreeMap;
+
 use glam::{DMat4, DVec3};
 
+use super::files::{ModelKey, key};
 use super::format::{FileModel, FileObject, FileScene};
 use marraztu_core::scene::{Model, Shape};
 
@@ -18,6 +21,8 @@ const PART_SEEN: f64 = 0.5;
 /// The reference sizes for boxes.
 pub(super) struct BoxSizes<'a> {
     file: &'a FileScene,
+    /// The first object of each model: thousands of models may be missing.
+    first: BTreeMap<ModelKey, &'a FileObject>,
     /// The side derived from the other objects.
     usual: Option<f64>,
 }
@@ -37,15 +42,15 @@ impl<'a> BoxSizes<'a> {
         let mut extents: Vec<f64> = objects.filter_map(extent).collect();
         extents.sort_by(f64::total_cmp);
         let usual = extents.get(extents.len() / 2);
-        Self { file, usual: usual.map(|extent| extent * PART_OF_USUAL) }
+        // Of equal keys the last one is kept.
+        let first = file.objects.iter().rev().map(|object| (key(&object.model), object)).collect();
+        Self { file, first, usual: usual.map(|extent| extent * PART_OF_USUAL) }
     }
 
     /// Returns the side of the box for a missing model, in object space. If several objects use the
     /// model, the first decides. Camera models are always drawn in one size.
     pub(super) fn side(&self, model: &FileModel) -> f64 {
-        let Some(object) = self.file.objects.iter().find(|object| object.model == *model) else {
-            return 1.0;
-        };
+        let Some(object) = self.first.get(&key(model)).copied() else { return 1.0 };
         let scale = column_lengths(object).max_element();
         let side = self.usual.or_else(|| self.seen_at(object)).unwrap_or(1.0) / scale;
         if side.is_finite() && side > 0.0 { side } else { 1.0 }

@@ -24,7 +24,8 @@ pub(super) fn finite(what: &str, numbers: &[f64]) -> Result<(), String> {
 /// Numbers as ranges, such as `0-7 9 12-20`: a hundred thousand numbers should not take as many
 /// lines.
 ///
-/// They stay ranges until an upper limit for them is known.
+/// They stay ranges until an upper limit for them is known. The ranges ascend and do not overlap,
+/// so a lookup takes logarithmic time.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(into = "String", try_from = "String")]
 pub(super) struct Numbers(Vec<(u32, u32)>);
@@ -43,7 +44,8 @@ impl Numbers {
 
     /// Returns whether the ranges contain a number.
     pub(super) fn has(&self, number: u32) -> bool {
-        self.0.iter().any(|(first, last)| (*first..=*last).contains(&number))
+        let after = self.0.partition_point(|(_, last)| *last < number);
+        self.0.get(after).is_some_and(|(first, _)| *first <= number)
     }
 
     /// Returns all numbers below `count`.
@@ -57,17 +59,24 @@ impl Numbers {
         self.ascending().take(most).collect()
     }
 
-    /// Iterates over the numbers in order. Repeated numbers count once.
+    /// Iterates over the numbers in order.
     fn ascending(&self) -> impl Iterator<Item = u32> {
-        let mut runs = self.0.clone();
-        runs.sort_unstable();
-        let mut next = 0;
-        runs.into_iter().flat_map(move |(first, last)| {
-            let run = next.max(first)..last.saturating_add(1);
-            next = next.max(run.end);
-            run
-        })
+        self.0.iter().flat_map(|(first, last)| *first..=*last)
     }
+}
+
+/// Sorts ranges and merges the ones that overlap. A range that ends before it begins is empty.
+fn merged(mut runs: Vec<(u32, u32)>) -> Vec<(u32, u32)> {
+    runs.retain(|(first, last)| first <= last);
+    runs.sort_unstable();
+    runs.dedup_by(|(first, last), (_, end)| {
+        let overlaps = *first <= *end;
+        if overlaps {
+            *end = (*end).max(*last);
+        }
+        overlaps
+    });
+    runs
 }
 
 impl From<Numbers> for String {
@@ -90,7 +99,10 @@ impl TryFrom<String> for Numbers {
             };
             Ok((number(first)?, number(last)?))
         };
-        text.split_whitespace().map(run).collect::<Result<_, String>>().map(Self)
+        text.split_whitespace()
+            .map(run)
+            .collect::<Result<_, String>>()
+            .map(|runs| Self(merged(runs)))
     }
 }
 
@@ -109,6 +121,14 @@ mod tests {
         assert_eq!(numbers.below(8), [0, 1, 2, 5, 7].into());
         assert_eq!(numbers.smallest(4), [0, 1, 2, 5].into());
         assert!(Numbers::try_from("three".to_owned()).is_err());
+    }
+
+    #[test]
+    fn numbers_are_found_in_ranges_of_any_order() {
+        let numbers = Numbers::try_from("7 20-29 3-5 25-40 4 9-8".to_owned()).unwrap();
+        let found: Vec<u32> = (0..50).filter(|number| numbers.has(*number)).collect();
+        assert_eq!(found, [vec![3, 4, 5, 7], (20..41).collect()].concat());
+        assert_eq!(String::from(numbers), "3-5 7 20-40");
     }
 
     #[test]

@@ -21,9 +21,9 @@ use marraztu_core::scene::{
 
 /// The identity of a model in a scene file: its name or path, the size of a shape, and the load
 /// options of a file. The crease angle comes last, so files that differ only in it are neighbours.
-type ModelKey = (String, Option<u64>, Option<(UpAxis, u64, Winding, BumpMaps, u64)>);
+pub(super) type ModelKey = (String, Option<u64>, Option<(UpAxis, u64, Winding, BumpMaps, u64)>);
 
-fn key(model: &FileModel) -> ModelKey {
+pub(super) fn key(model: &FileModel) -> ModelKey {
     match model {
         FileModel::Own(name) => (name.clone(), None, None),
         FileModel::Shape { name, size } => (name.clone(), Some(size.to_bits()), None),

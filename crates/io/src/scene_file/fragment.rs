@@ -3,6 +3,7 @@
 //! Items have the same form as in scene files, but with absolute paths, since the text can be
 //! pasted into any scene.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
@@ -59,6 +60,7 @@ struct FileFragment {
 pub fn items_to_text(scene: &Scene, items: &[ItemId]) -> Result<String, String> {
     let mut fragment = FileFragment { version: VERSION, ..FileFragment::default() };
     let nowhere = Path::new("");
+    let items: HashSet<&ItemId> = items.iter().collect();
     for (id, object) in scene.objects.iter().filter(|(id, _)| items.contains(&ItemId::Object(*id)))
     {
         fragment.objects.push(file_object(id.0, object, nowhere)?);
@@ -139,7 +141,6 @@ pub fn items_of_text(
         view: FileView::default(),
         settings: Settings::default(),
     };
-    open::check_counts(&file).map_err(fail)?;
     // From here on, the fragment is checked like a scene file.
     let mut files = Files::new(PathBuf::new(), NAME);
     files.know(known);

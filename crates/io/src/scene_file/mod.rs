@@ -29,8 +29,9 @@ use super::error::{LoadError, shown};
 use super::examples;
 use super::findings::{Finding, Findings, joined};
 use super::fingerprint::Fingerprint;
+use super::obj::MOST_BYTES;
 use super::progress::Progress;
-use super::read::{MOST_WORDS, read, utf_8};
+use super::read::{read, utf_8};
 use super::replace::{SaveError, Worth, replace};
 use super::sources::Sources;
 use super::window_state::WindowState;
@@ -135,9 +136,11 @@ pub(crate) fn text_with_window(
     let file = file.map_err(fail)?;
     let config = ron::ser::PrettyConfig::new().new_line("\n");
     let text = ron::ser::to_string_pretty(&file, config).map_err(|e| fail(e.to_string()))?;
+    if text.len() >= MOST_BYTES {
+        return Err(fail("it is too large".to_owned()));
+    }
     // Read the text back: a number that is not finite could be written, but not read.
     let again = file_scene(&text, "").map_err(|error| fail(error.to_string()))?;
-    open::check_counts(&again).map_err(fail)?;
     open::scene(&again, &StandIns, &mut Findings::default()).map_err(fail)?;
     Ok(text + "\n")
 }
@@ -154,7 +157,7 @@ pub fn open(path: &Path, progress: &Progress) -> Result<Opened, SceneFileError> 
         let folder = path.parent().unwrap_or(path).to_owned();
         return open_text(text, &name, folder, progress);
     }
-    let bytes = read(path, MOST_WORDS, &Progress::new())?;
+    let bytes = read(path, MOST_BYTES, &Progress::new())?;
     let content = Fingerprint::of(&bytes);
     let text = String::from_utf8(utf_8(bytes)).map_err(|_bytes| SceneFileError::File {
         file: name.clone(),
@@ -173,7 +176,6 @@ pub(crate) fn open_text(
 ) -> Result<Opened, SceneFileError> {
     let fail = |reason: String| SceneFileError::File { file: name.to_owned(), reason };
     let file = file_scene(text, name)?;
-    open::check_counts(&file).map_err(fail)?;
     let mut files = Files::new(folder, name);
     files.load(&file, name, progress)?;
     let mut own = std::mem::take(&mut files.lost);

@@ -18,27 +18,9 @@ use marraztu_core::scene::{
     Model, Object, ObjectId, Objects, Pose, Scene, Sides, SpotOwner, Texture, Tracked, View,
 };
 
-/// The most items of a kind in a scene: each is looked up among all others.
-const MOST_ITEMS: usize = 10_000;
-
 /// The most hidden parts of missing models that are kept: it limits the memory that a damaged file
 /// takes.
 const MOST_HIDDEN: usize = 1_000_000;
-
-/// Checks that no kind has too many items. Fails with the reason if there are too many.
-pub(super) fn check_counts(file: &FileScene) -> Result<(), String> {
-    let counts = [
-        ("objects", file.objects.len()),
-        ("cameras", file.cameras.len()),
-        ("lights", file.lights.len()),
-    ];
-    match counts.into_iter().find(|(_, count)| *count > MOST_ITEMS) {
-        Some((what, count)) => {
-            Err(format!("it has {count} {what}, but a scene has at most {MOST_ITEMS}"))
-        }
-        None => Ok(()),
-    }
-}
 
 /// The models and textures that a scene file needs.
 pub(super) trait Needs {
@@ -223,4 +205,39 @@ fn read_camera(camera: &FileCamera, needs: &dyn Needs) -> Result<Camera, String>
         pose: Tracked::new(Pose { eye, axes, mode }),
         lens: camera.lens,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use marraztu_core::accuracy::Settings;
+    use marraztu_core::edit::items;
+
+    use super::*;
+    use crate::keeping::{Abandoned, Journal, OwnFolders, Unsaved};
+    use crate::progress::Progress;
+    use crate::window_state::WindowState;
+    use crate::{default_scene, open, save};
+
+    #[test]
+    fn twenty_thousand_objects_can_be_saved_opened_and_recovered() {
+        let (mut scene, view) = default_scene();
+        let object = scene.objects.at(0).unwrap().1.clone();
+        items::insert_objects(&scene, vec![object; 20_000]).apply(&mut scene).unwrap();
+        assert_eq!(scene.objects.len(), 20_003);
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.marraztu");
+        save(&path, &scene, &view, &Settings::default()).unwrap();
+        let opened = open(&path, &Progress::new()).unwrap().scene;
+        assert!(opened.objects == scene.objects);
+        // The journal writes the same text.
+        let folders = OwnFolders::within(folder.path());
+        let journal = Journal::begin(&folders).unwrap();
+        let (settings, window) = (Settings::default(), WindowState::DEFAULT);
+        journal.keep(Unsaved { scene, view, settings, window, file: None, content: None });
+        journal.wait();
+        assert_eq!(journal.news(), None);
+        drop(journal);
+        let work = Abandoned::all(&folders);
+        assert_eq!(open(work[0].path(), &Progress::new()).unwrap().scene.objects.len(), 20_003);
+    }
 }
