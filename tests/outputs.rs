@@ -16,7 +16,7 @@ use marraztu_core::edit::turntable::{Turn, turned};
 use marraztu_core::scene::{
     Command, LoadOptions, MaterialChoice, Mesh, Object, PolygonMode, Scene, Sides, View,
 };
-use marraztu_io::{self as io, Progress, Sources};
+use marraztu_io::{self as io, ExportOptions, Progress, Sources};
 use marraztu_render::{Renderer, plan_frame, without_ground};
 use serde_json::Value;
 
@@ -136,7 +136,8 @@ fn an_exported_obj_is_read_back_as_the_same_picture() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("first.obj");
     let (before, view) = scene();
-    let exported = io::export(&path, &before, &view, &Sources::default()).unwrap();
+    let exported =
+        io::export(&path, &before, &view, ExportOptions::SCENE, &Sources::default()).unwrap();
     assert_eq!(exported.files.last().unwrap(), &path);
     let loaded = io::load(&path, &LoadOptions::default(), &Progress::new()).unwrap();
     assert_eq!(loaded.findings, [], "nothing had to be mended");
@@ -220,7 +221,8 @@ fn an_exported_gltf_is_sound_and_has_every_position_bit_for_bit() {
     let (scene, view) = scene();
     for name in ["first scene.gltf", "first.glb"] {
         let path = folder.path().join(name);
-        let exported = io::export(&path, &scene, &view, &Sources::default()).unwrap();
+        let exported =
+            io::export(&path, &scene, &view, ExportOptions::SCENE, &Sources::default()).unwrap();
         assert!(exported.notes.iter().any(|note| note.contains("ambient lights")));
         // The URI of the buffer is escaped; the file has the plain name.
         let (json, buffer) = if name.ends_with("gltf") {

@@ -221,6 +221,7 @@ impl Copied {
             unlit: false,
             multiplies_colors: true,
             undrawn: BTreeMap::new(),
+            undrawn_maps: Vec::new(),
         };
         Ok(Model {
             name,

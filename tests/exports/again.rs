@@ -10,7 +10,7 @@ use marraztu_core::edit::{framing, items};
 use marraztu_core::scene::{
     FileMaterial, LoadOptions, MaterialChoice, Model, Object, PartNames, PresetId,
 };
-use marraztu_io::{self as io, Loaded, Progress, Sources};
+use marraztu_io::{self as io, ExportOptions, Loaded, Progress, Sources};
 use marraztu_render::{Renderer, plan_frame};
 
 use super::{put, put_picture, runs};
@@ -163,7 +163,7 @@ fn presets_are_called_by_their_names_and_objects_as_the_user_calls_them() {
         marraztu_core::scene::Command::Replace(item).apply(&mut scene).unwrap();
     }
     let path = folder.path().join("first.obj");
-    io::export(&path, &scene, &view, &Sources::default()).unwrap();
+    io::export(&path, &scene, &view, ExportOptions::SCENE, &Sources::default()).unwrap();
     let text = std::fs::read_to_string(&path).unwrap();
     let named = |statement: &str| -> Vec<String> {
         text.lines().filter_map(|line| line.strip_prefix(statement)).map(str::to_owned).collect()

@@ -7,6 +7,7 @@
 
 mod again;
 mod gltf;
+mod kept;
 mod validator;
 
 use std::path::Path;
@@ -54,14 +55,19 @@ fn json(path: &Path) -> Value {
     serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap()
 }
 
-/// Decodes an image of a .gltf file from its buffer view.
-fn image(path: &Path, json: &Value, image: usize) -> Picture {
+/// The bytes of an image of a .gltf file, from its buffer view.
+fn image_bytes(path: &Path, json: &Value, image: usize) -> Vec<u8> {
     let number = |value: &Value| usize::try_from(value.as_u64().unwrap()).unwrap();
     let view = &json["bufferViews"][number(&json["images"][image]["bufferView"])];
     let (start, length) = (number(&view["byteOffset"]), number(&view["byteLength"]));
     let buffer = std::fs::read(path.with_extension("bin")).unwrap();
+    buffer[start..start + length].to_vec()
+}
+
+/// Decodes an image of a .gltf file.
+fn image(path: &Path, json: &Value, image: usize) -> Picture {
     let file = path.with_extension("image.png");
-    std::fs::write(&file, &buffer[start..start + length]).unwrap();
+    std::fs::write(&file, image_bytes(path, json, image)).unwrap();
     io::load_picture(&file).unwrap()
 }
 

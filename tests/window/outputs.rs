@@ -152,3 +152,21 @@ fn a_scene_is_exported_with_notes_on_omissions_of_the_format() {
     editor.key(Key::Escape, true, modifiers);
     editor.settle();
 }
+
+#[test]
+fn models_are_exported_without_the_cameras_and_lights_of_the_scene() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut editor = Editor::small();
+    let rows = [(Action::ExportModels, "models.gltf"), (Action::ExportScene, "scene.gltf")];
+    for (action, name) in rows {
+        let path = folder.path().join(name);
+        editor.perform(action);
+        editor.type_path(&path);
+        editor.wait_until(|editor| says(editor, &format!("Saved {}", path.display())));
+        let text = std::fs::read_to_string(&path).unwrap();
+        let is_scene = action == Action::ExportScene;
+        assert_eq!(text.contains("\"cameras\""), is_scene, "{name}");
+        assert_eq!(text.contains("KHR_lights_punctual"), is_scene, "{name}");
+        assert!(text.contains("\"x_wing\""), "{name}");
+    }
+}

@@ -56,6 +56,14 @@ impl LoadError {
         Self::file(file, format!("the file is larger than {} MB", most >> 20))
     }
 
+    /// Returns the reason without the name of the file.
+    pub(super) fn reason(&self) -> String {
+        match self {
+            Self::File { reason, .. } | Self::Line { reason, .. } => reason.clone(),
+            Self::Cancelled => self.to_string(),
+        }
+    }
+
     pub(super) fn system(file: &str, error: &std::io::Error) -> Self {
         Self::file(file, reason(error))
     }

@@ -54,13 +54,13 @@ pub use companions::{Companion, companions};
 pub use describe::{describe, describe_model};
 pub use error::LoadError;
 pub use examples::{EXAMPLES, Example, is_example};
-pub use export::{EXPORT_ENDINGS, Exported, check_export_target, export};
+pub use export::{EXPORT_ENDINGS, ExportOptions, Exported, check_export_target, export};
 pub use findings::{Finding, FindingKind, joined};
 pub use fingerprint::Fingerprint;
 pub use input::Input;
 pub use keeping::{
-    Abandoned, Discarded, Helpers, Journal, JournalNews, MOST_RECENT, OwnFolders, Preferences, Theme,
-    Unsaved,
+    Abandoned, Discarded, Helpers, Journal, JournalNews, MOST_RECENT, OwnFolders, Preferences,
+    Theme, Unsaved,
 };
 pub use layers::{
     ExrCamera, IdPixels, LayerKind, LayerNumbers, LayerPicture, PngNumbers, layer_npy, layer_png,

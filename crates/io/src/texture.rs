@@ -22,7 +22,7 @@ const LARGEST_SIDE: u32 = 16_384;
 const MOST_MEMORY: u64 = 2 << 30;
 
 /// The most bytes in a file.
-const MOST_BYTES: usize = 2 << 30;
+pub(super) const MOST_BYTES: usize = 2 << 30;
 
 /// The input formats of textures, by their common names.
 const FORMATS: &[(&str, ImageFormat)] = &[
@@ -165,12 +165,21 @@ fn decode(path: &Path, most: usize) -> Result<(Picture, bool), LoadError> {
     Ok((picture, cut_off))
 }
 
+/// Decodes the content of a file; `None` if it is damaged, truncated or not a picture.
+pub(super) fn decoded(path: &Path, content: &[u8]) -> Option<Picture> {
+    let (decoded, cut_off) = decode_bytes(path, content, usize::MAX).ok()?;
+    picture(decoded).filter(|_| !cut_off)
+}
+
 /// Works like [`decode`], for any number of bits.
 fn decode_any(path: &Path, most: usize) -> Result<(DynamicImage, bool), LoadError> {
+    decode_bytes(path, &read(path, MOST_BYTES, &Progress::new())?, most)
+}
+
+fn decode_bytes(path: &Path, bytes: &[u8], most: usize) -> Result<(DynamicImage, bool), LoadError> {
     let file = shown(path);
     let fail = |reason: String| LoadError::file(&file, reason);
-    let bytes = read(path, MOST_BYTES, &Progress::new())?;
-    let mut reader = ImageReader::new(Cursor::new(&bytes));
+    let mut reader = ImageReader::new(Cursor::new(bytes));
     // TGA files have no signature, so the extension decides.
     if let Ok(format) = ImageFormat::from_path(path) {
         reader.set_format(format);
@@ -180,8 +189,8 @@ fn decode_any(path: &Path, most: usize) -> Result<(DynamicImage, bool), LoadErro
     if reader.format().is_none() {
         return Err(fail(unknown()));
     }
-    let cut_off = reader.format() == Some(ImageFormat::Jpeg) && jpeg_ends_early(&bytes);
-    let states_no_alpha = reader.format() == Some(ImageFormat::Tga) && tga_states_no_alpha(&bytes);
+    let cut_off = reader.format() == Some(ImageFormat::Jpeg) && jpeg_ends_early(bytes);
+    let states_no_alpha = reader.format() == Some(ImageFormat::Tga) && tga_states_no_alpha(bytes);
     // Limits protect against small files that claim huge pictures.
     let mut limits = image::Limits::default();
     limits.max_image_width = Some(LARGEST_SIDE);

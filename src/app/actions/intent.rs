@@ -6,6 +6,7 @@ use crate::app::state::{State, ViewStep};
 use crate::app::widgets::regions::Way;
 use marraztu_core::edit::selection::Selection;
 use marraztu_core::scene::{Command, ItemId, ObjectId, Subject, View};
+use marraztu_io::ExportOptions;
 
 /// The effect of an action.
 pub(crate) enum Intent {
@@ -80,7 +81,7 @@ pub(crate) enum FileIntent {
     SavePicture,
     PictureOptions,
     Turntable,
-    Export,
+    Export(ExportOptions),
     CopyPicture,
     NewAncestor,
     Reload,

@@ -24,6 +24,7 @@ use marraztu_core::scene::{
     Command, Fill, Frame, ItemId, LightKind, NormalLength, Normals, ObjectId, Projection, Scene,
     Shape, SpotOwner, Subject, Transformation, View,
 };
+use marraztu_io::ExportOptions;
 
 type Resolved = Result<Intent, Refusal>;
 
@@ -69,7 +70,8 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
             let visible = scene.objects.iter().any(|(_, object)| object.visible);
             if visible { file(FileIntent::Turntable) } else { Err(Refusal::NothingToFrame) }
         }
-        Action::ExportScene => file(FileIntent::Export),
+        Action::ExportModels => file(FileIntent::Export(ExportOptions::MODELS)),
+        Action::ExportScene => file(FileIntent::Export(ExportOptions::SCENE)),
         Action::NewAncestor => file(FileIntent::NewAncestor),
         Action::Quit => file(FileIntent::Quit),
 

@@ -113,7 +113,8 @@ impl Action {
             Self::CopyPicture | Self::PictureOptions | Self::SaveTurntable => return None,
             Self::ReloadModels | Self::RecoverWork | Self::FitExposure => return None,
             Self::RecoverDiscarded | Self::FindMissing => return None,
-            Self::ExportScene | Self::NewAncestor | Self::ToPanelsBack => return None,
+            Self::ExportModels | Self::ExportScene => return None,
+            Self::NewAncestor | Self::ToPanelsBack => return None,
             Self::Quit | Self::Undo | Self::Redo | Self::TakeBack | Self::Rename => return None,
             Self::Cut | Self::Copy | Self::Paste | Self::CopyMaterial => return None,
             Self::Duplicate | Self::Delete | Self::Split | Self::AddCamera | Self::AddSun => {

@@ -60,8 +60,12 @@ actions! {
     SaveTurntable File ONCE [Command(Key::F12)]
         "Turntable..." "Saves a turntable as a GIF, an APNG or numbered pictures."
         "animation gif apng video movie spin rotate frames";
+    ExportModels File ONCE []
+        "Export models..."
+        "Exports the objects as OBJ with MTL, or as glTF, without cameras and lights."
+        "save obj mtl gltf glb blender three convert";
     ExportScene File ONCE []
-        "Export scene..." "Exports the scene as OBJ with MTL, or as glTF."
+        "Export scene..." "Exports the objects, cameras and lights as glTF, or the objects as OBJ."
         "save obj mtl gltf glb blender three convert";
     CopyPicture File ONCE [CommandShift(Key::C)]
         "Copy picture" "Copies the picture in the viewport to the clipboard."

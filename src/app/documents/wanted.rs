@@ -6,7 +6,7 @@ use super::browser::Mode;
 use super::folders::Kind;
 use super::loading::is_scene;
 use marraztu_core::scene::ObjectId;
-use marraztu_io as io;
+use marraztu_io::{self as io, ExportOptions};
 
 /// The purpose of a file dialog.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -25,8 +25,8 @@ pub(crate) enum Wanted {
     PictureWithOptionsTo,
     /// Save the turntable.
     TurntableTo,
-    /// Export the scene.
-    ExportTo,
+    /// Export the scene, or a part of it.
+    ExportTo(ExportOptions),
     /// Choose a texture for these objects.
     Texture(Vec<ObjectId>),
     /// Choose a texture for the model in the material dialog.
@@ -70,7 +70,7 @@ impl Wanted {
             | Self::PictureTo
             | Self::PictureWithOptionsTo
             | Self::TurntableTo
-            | Self::ExportTo => Kind::Saved,
+            | Self::ExportTo(_) => Kind::Saved,
         }
     }
 
@@ -99,9 +99,11 @@ impl Wanted {
                 ("Save the picture", Mode::Save, pictures())
             }
             Self::TurntableTo => ("Save the turntable", Mode::Save, vec!["gif", "png"]),
-            Self::ExportTo => {
-                let endings = io::EXPORT_ENDINGS;
-                ("Export the scene", Mode::Save, vec![endings[2], endings[1], endings[0]])
+            Self::ExportTo(options) => {
+                let [obj, gltf, glb] = io::EXPORT_ENDINGS;
+                let is_scene = *options == ExportOptions::SCENE;
+                let title = if is_scene { "Export the scene" } else { "Export the models" };
+                (title, Mode::Save, vec![glb, gltf, obj])
             }
             Self::Texture(_) | Self::TextureOfModel => {
                 ("Choose a texture", Mode::Open, io::texture_endings())

@@ -84,7 +84,7 @@ impl App {
             (Wanted::PictureWithOptionsTo | Wanted::TurntableTo, Some(path)) => {
                 self.make_picture(ctx, path);
             }
-            (Wanted::ExportTo, Some(path)) => self.export_scene(ctx, path),
+            (Wanted::ExportTo(options), Some(path)) => self.export(ctx, path, options),
             (Wanted::Scene, Some(path)) => self.open_scene(ctx, path),
             (Wanted::SceneTo(after), Some(path)) => self.save_to(ctx, path, after),
             (Wanted::Missing(old), Some(path)) => self.found_missing(ctx, old, path),

@@ -291,6 +291,7 @@ mod tests {
     use super::*;
     use crate::app::documents::picture_dialog::{PictureChoices, Purpose};
     use crate::app::editor::orders::Content;
+    use marraztu_io::ExportOptions;
 
     fn orders(folder: &Path) -> Vec<Order> {
         let size = Size::new(64, 48);
@@ -299,7 +300,7 @@ mod tests {
         [
             ("a.png", Content::Drawn(choices(Purpose::Picture))),
             ("a.gif", Content::Drawn(turntable)),
-            ("a.glb", Content::Exported),
+            ("a.glb", Content::Exported(ExportOptions::MODELS)),
         ]
         .map(|(name, content)| Order { path: folder.join(name), content })
         .into()

@@ -17,7 +17,7 @@ use crate::app::drawing::images;
 use crate::app::state::{Notice, NoticeKind, State};
 use crate::app::tasks::{Outcome, Task};
 use crate::app::widgets::text::file_name;
-use marraztu_io::{self as io, Progress};
+use marraztu_io::{self as io, ExportOptions, Progress};
 
 /// Files being made.
 #[derive(Debug, Default)]
@@ -130,8 +130,8 @@ impl App {
         self.make(ctx, Order { path, content: Content::Drawn(choices) });
     }
 
-    pub(crate) fn export_scene(&mut self, ctx: &Context, path: PathBuf) {
-        self.make(ctx, Order { path, content: Content::Exported });
+    pub(crate) fn export(&mut self, ctx: &Context, path: PathBuf, options: ExportOptions) {
+        self.make(ctx, Order { path, content: Content::Exported(options) });
     }
 
     fn make(&mut self, ctx: &Context, order: Order) {
@@ -251,7 +251,8 @@ mod tests {
     use marraztu_core::accuracy::Settings;
 
     fn begin(making: &mut Making, name: &str) {
-        let order = Order { path: PathBuf::from(name), content: Content::Exported };
+        let order =
+            Order { path: PathBuf::from(name), content: Content::Exported(ExportOptions::SCENE) };
         let (scene, view) = marraztu_io::default_scene();
         let job = Job::make((&scene, &view, &Settings::default()), &order).unwrap();
         let (task, sender) = Task::promised(order.label());

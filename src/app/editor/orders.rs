@@ -10,7 +10,7 @@ use crate::picture_file::draw_into;
 use marraztu_core::accuracy::{Settings, Shot};
 use marraztu_core::edit::turntable::turned;
 use marraztu_core::scene::{Scene, View};
-use marraztu_io::{self as io, Animation, AnimationWriter, Progress, Sources};
+use marraztu_io::{self as io, Animation, AnimationWriter, ExportOptions, Progress, Sources};
 use marraztu_render::{Renderer, plan_frame, without_ground_while};
 
 /// A file to make from a scene.
@@ -24,8 +24,8 @@ pub(super) struct Order {
 pub(super) enum Content {
     /// A picture, or a turntable.
     Drawn(PictureChoices),
-    /// The scene in another format.
-    Exported,
+    /// The scene in another format, or a part of it.
+    Exported(ExportOptions),
 }
 
 /// The outcome of making a file.
@@ -49,7 +49,7 @@ impl Order {
         let name = file_name(&self.path);
         match self.content {
             Content::Drawn(_) => format!("Drawing {name}"),
-            Content::Exported => format!("Exporting {name}"),
+            Content::Exported(_) => format!("Exporting {name}"),
         }
     }
 
@@ -69,7 +69,7 @@ impl Order {
                     Purpose::Turntable => self.turntable(&shot, &choices, sources, progress),
                 }
             }
-            Content::Exported => io::export(&self.path, &scene, &view, sources)
+            Content::Exported(options) => io::export(&self.path, &scene, &view, options, sources)
                 .map(|exported| Some(exported.notes))
                 .map_err(|error| error.to_string()),
         };

@@ -209,9 +209,9 @@ impl App {
             FileIntent::SavePicture => self.ask_file(ctx, Wanted::PictureTo, "picture.png"),
             FileIntent::PictureOptions => self.ask_picture(Purpose::Picture),
             FileIntent::Turntable => self.ask_picture(Purpose::Turntable),
-            FileIntent::Export => {
+            FileIntent::Export(options) => {
                 let name = format!("{}.glb", self.state.proposed_name());
-                self.ask_file(ctx, Wanted::ExportTo, &name);
+                self.ask_file(ctx, Wanted::ExportTo(options), &name);
             }
             FileIntent::Recover => self.unless_unsaved(ctx, After::Recover(0)),
             FileIntent::RecoverDiscarded => match &self.state.discarded[..] {

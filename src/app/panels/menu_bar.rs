@@ -34,7 +34,7 @@ const PARTS: [Action; 23] = [
     Action::Load,
     Action::Save,
     Action::SavePicture,
-    Action::ExportScene,
+    Action::ExportModels,
     Action::Quit,
     Action::Rename,
     Action::Cut,

@@ -41,7 +41,9 @@ pub use mesh::{
     ClosedBodies, Corner, Mesh, MeshError, MeshSource, NONE, Part, PartNames, Point, SourceCorner,
     Triangle, dvec3, newell, split_positions,
 };
-pub use model::{BumpMaps, FileMaterial, LoadOptions, Model, Scale, Undrawn, UpAxis, Winding};
+pub use model::{
+    BumpMaps, FileMaterial, LoadOptions, Model, Scale, Undrawn, UndrawnMap, UpAxis, Winding,
+};
 pub use object::{Object, PartLook, Sides, Spin, Surface};
 pub use shapes::Shape;
 pub use smoothing::{Crease, Smoothing};

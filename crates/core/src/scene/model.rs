@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Crease, Material, Mesh, SurfaceMaps, Texture};
+use super::{Crease, Material, Mesh, SurfaceMaps, Texture, Wrap};
 use crate::base::{Shared, color::Color};
 
 /// The content of a loaded file. Objects share it, and it never changes.
@@ -225,6 +225,8 @@ pub struct FileMaterial {
     pub multiplies_colors: bool,
     /// The numbers of statements that do not affect pictures, such as `Ni` and `Pr`, for exports.
     pub undrawn: Undrawn,
+    /// The maps that do not affect pictures, such as `map_Pr` and `refl`, for exports.
+    pub undrawn_maps: Vec<UndrawnMap>,
 }
 
 impl FileMaterial {
@@ -239,7 +241,39 @@ impl FileMaterial {
             unlit: false,
             multiplies_colors: true,
             undrawn: Undrawn::new(),
+            undrawn_maps: Vec::new(),
         }
+    }
+}
+
+/// A map of a file's material that does not affect pictures. Its file is not read.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UndrawnMap {
+    /// The keyword of its statement.
+    pub keyword: String,
+    /// The options of its statement.
+    pub options: String,
+    /// The file, which may be missing.
+    pub source: PathBuf,
+    /// The wrapping of uvs outside 0 to 1.
+    pub wrap: Wrap,
+    /// The offset `-o u v`.
+    pub offset: [f64; 2],
+    /// The scale `-s u v`.
+    pub scale: [f64; 2],
+}
+
+impl UndrawnMap {
+    /// Returns the keyword and the options.
+    pub fn words(&self) -> [String; 2] {
+        [self.keyword.clone(), self.options.clone()]
+    }
+
+    /// Returns the channel that the option `-imfchan` chooses: r, g, b, m (alpha), l or z.
+    pub fn channel(&self) -> Option<char> {
+        let mut words = self.options.split(' ');
+        words.find(|word| word.eq_ignore_ascii_case("-imfchan"))?;
+        words.next()?.chars().next().map(|c| c.to_ascii_lowercase())
     }
 }
 

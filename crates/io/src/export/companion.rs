@@ -1,8 +1,9 @@
 //! Decides whether an export may replace a companion file: an MTL file, a texture or a buffer.
 //!
 //! The user names only the main file, so an existing companion is overwritten only if an earlier
-//! export wrote it. Text files and textures carry a signature. A buffer, or a texture of an earlier
-//! version, counts as ours if an exported text refers to it.
+//! export wrote it. Text files and encoded textures carry a signature. Other companions, such as
+//! buffers and copied textures, count as ours if an exported text refers to them. A file with the
+//! same content may be replaced in any case.
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -19,12 +20,21 @@ const GENERATOR: &[u8] = br#""generator":"Marraztu""#;
 /// The first bytes of a PNG file.
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
 
-/// Checks that a companion file is new, or was written by an earlier export to `main`.
-pub(super) fn check_companion(companion: &Path, main: &Path) -> Result<(), SaveError> {
+/// Checks that a companion file with this content is new, or was written by an earlier export to
+/// `main`.
+pub(super) fn check_companion(
+    companion: &Path,
+    content: &[u8],
+    main: &Path,
+) -> Result<(), SaveError> {
     check_target(companion)?;
     let is_new = fs::symlink_metadata(companion).is_err();
     let texts = [main.to_owned(), main.with_extension("mtl")];
-    if is_new || is_ours(companion) || texts.iter().any(|text| names(text, companion)) {
+    let may_replace = is_new
+        || is_ours(companion)
+        || texts.iter().any(|text| names(text, companion))
+        || has_content(companion, content);
+    if may_replace {
         return Ok(());
     }
     let reason = format!(
@@ -41,6 +51,13 @@ fn is_ours(file: &Path) -> bool {
     let read = File::open(file).and_then(|file| file.take(256).read_to_end(&mut begin));
     let is_marked = || begin.starts_with(PNG) && find(&begin, MARK.as_bytes()).is_some();
     read.is_ok() && (is_signed(&begin) || is_marked())
+}
+
+/// Returns whether a file has this content already.
+fn has_content(file: &Path, content: &[u8]) -> bool {
+    let length = fs::metadata(file).map(|metadata| usize::try_from(metadata.len()));
+    length.is_ok_and(|length| length == Ok(content.len()))
+        && fs::read(file).is_ok_and(|own| own == content)
 }
 
 /// Returns whether a text was exported by this program and names the companion.

@@ -18,7 +18,7 @@ use gltf_json::{Index, Root};
 use super::gltf_buffer::Buffer;
 use super::look::{Detail, Looks};
 use super::names::Names;
-use super::{Content, Format, escaped};
+use super::{Content, ExportOptions, Format, escaped};
 use marraztu_core::scene::{Scene, View};
 
 pub(super) struct Writer<'a> {
@@ -37,7 +37,7 @@ pub(super) fn written(
     stem: &str,
     scene: &Scene,
     view: &View,
-    format: Format,
+    (format, options): (Format, ExportOptions),
 ) -> Result<Content, String> {
     let mut writer = Writer {
         scene,
@@ -55,10 +55,12 @@ pub(super) fn written(
         writer.object(object);
     }
     writer.materials()?;
-    for (_, camera) in scene.cameras.iter() {
-        writer.camera(camera);
+    if options.cameras {
+        scene.cameras.iter().for_each(|(_, camera)| writer.camera(camera));
     }
-    writer.lights();
+    if options.lights {
+        writer.lights();
+    }
     let Writer { mut root, buffer, nodes, notes, .. } = writer;
     let all = gltf_json::Scene {
         extensions: None,

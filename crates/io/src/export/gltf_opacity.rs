@@ -1,4 +1,5 @@
-//! Merges opacity maps into the alpha of textures, since glTF has no opacity maps.
+//! Merges two textures into one: opacity maps into the alpha of textures, since glTF has no opacity
+//! maps, and maps of roughness with maps of metalness.
 //!
 //! The merged picture covers a part of the surface after which both pictures repeat. A texture that
 //! repeats 4 times while the map repeats once is therefore repeated 4 times in the merged picture.
@@ -54,16 +55,25 @@ impl Merging {
 
     /// Multiplies the texture's alpha by the map.
     pub(super) fn merged(&self, texture: &Texture, map: &Texture) -> Texture {
-        let (size, opacity) = (self.size, opacity(map));
+        let opacity = opacity(map);
+        self.combined(texture, map, |[r, g, b, alpha], map| [r, g, b, alpha * opacity(map) / 255.0])
+    }
+
+    /// Computes every texel from the texels of both at the same point of the surface.
+    pub(super) fn combined(
+        &self,
+        texture: &Texture,
+        map: &Texture,
+        combine: impl Fn([f64; 4], [f64; 4]) -> [f64; 4] + Sync,
+    ) -> Texture {
+        let size = self.size;
         let mut pixels = vec![[0; 4]; size.area()];
         let rows = pixels.par_chunks_mut(size.width.max(1)).enumerate();
         rows.for_each(|(y, row)| {
             for (x, pixel) in row.iter_mut().enumerate() {
-                // Both are sampled at the same point of the surface.
                 let at = [middle(x, size.width), 1.0 - middle(y, size.height)];
                 let of = |it| sample(it, moved(&self.layout, &Layout::of(it), at));
-                let [r, g, b, alpha] = of(texture);
-                *pixel = [r, g, b, alpha * opacity(of(map)) / 255.0].map(byte);
+                *pixel = combine(of(texture), of(map)).map(byte);
             }
         });
         let Layout { offset, scale } = self.layout;
@@ -144,7 +154,7 @@ fn size(texture: &Texture, map: &Texture, layout: &Layout) -> (Size, bool) {
     (Size::new(width, height), [width as f64, height as f64] == wanted)
 }
 
-fn with_pixels(like: &Texture, size: Size, pixels: Vec<[u8; 4]>) -> Texture {
+pub(super) fn with_pixels(like: &Texture, size: Size, pixels: Vec<[u8; 4]>) -> Texture {
     let picture = Picture::from_pixels(size, pixels).unwrap_or_default();
     Texture { picture: Shared::new(picture), ..like.clone() }
 }
@@ -192,6 +202,6 @@ fn sample(texture: &Texture, [u, v]: [f64; 2]) -> [f64; 4] {
 }
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 255")]
-fn byte(x: f64) -> u8 {
+pub(super) fn byte(x: f64) -> u8 {
     x.round().clamp(0.0, 255.0) as u8
 }

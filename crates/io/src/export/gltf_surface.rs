@@ -1,11 +1,14 @@
 //! Converts Phong materials to glTF materials.
 
+use std::collections::BTreeSet;
+
 use gltf_json::material::{AlphaCutoff, AlphaMode, PbrBaseColorFactor, StrengthFactor};
 use gltf_json::validation::Checked;
 use gltf_json::{extensions, material};
 
 use super::gltf::Writer;
 use super::gltf_buffer::single;
+use super::gltf_roughness::is_rough_metal;
 use super::gltf_texture::{Cover, Infos, Textures};
 use super::look::Look;
 use marraztu_core::base::{Shared, color};
@@ -19,6 +22,12 @@ impl Writer<'_> {
         if looks.iter().any(loses_maps) {
             let text = "glTF has no height, specular or ambient maps: left out";
             self.notes.push(text.to_owned());
+        }
+        self.notes.extend(self.looks.scalars.notes().cloned());
+        let lost: BTreeSet<&str> = looks.iter().flat_map(lost_maps).collect();
+        if !lost.is_empty() {
+            let lost: Vec<&str> = lost.into_iter().collect();
+            self.notes.push(format!("glTF has no maps like {}: left out", lost.join(", ")));
         }
         for look in &looks {
             let infos = self.infos(&mut textures, look);
@@ -43,19 +52,27 @@ impl Writer<'_> {
 /// loss: ambient light shows the texture anyway.
 fn loses_maps(look: &Look) -> bool {
     look.maps.iter().any(|(kind, map)| match kind {
-        MapKind::Specular | MapKind::Exponent => true,
+        MapKind::Specular => true,
         MapKind::Bump => look.map(MapKind::Normal).is_none(),
         MapKind::Ambient => {
             let is_shown = |it: &Shared<Texture>| Shared::same(&it.picture, &map.texture.picture);
             !look.texture.as_ref().is_some_and(is_shown)
         }
+        // An exponent map becomes roughness, which an unlit surface does not have.
+        MapKind::Exponent => look.rough_metal.texture.is_none(),
         MapKind::Opacity | MapKind::Emission | MapKind::Normal => false,
     })
 }
 
+/// Returns the keywords of the maps that glTF lacks.
+fn lost_maps(look: &Look) -> impl Iterator<Item = &str> {
+    let lost = look.undrawn_maps.iter().filter(|map| look.unlit || !is_rough_metal(map));
+    lost.map(|map| map.keyword.as_str())
+}
+
 /// Converts a Phong material to metallic roughness.
 fn surface(look: &Look, infos: Infos) -> gltf_json::Material {
-    let Infos { base, emission, normal, cover } = infos;
+    let Infos { base, emission, normal, rough_metal, cover } = infos;
     let normal_texture = normal.map(|info| material::NormalTexture {
         index: info.index,
         scale: 1.0,
@@ -80,9 +97,6 @@ fn surface(look: &Look, infos: Infos) -> gltf_json::Material {
             emissive_strength: extensions::material::EmissiveStrengthFactor(single(strength)),
         }),
     };
-    // Roughness and metalness from the file take precedence over the derived ones.
-    let exponent = roughness(look.material.exponent);
-    let metallic = look.undrawn("Pm").unwrap_or(0.0);
     gltf_json::Material {
         alpha_cutoff: (alpha_mode == AlphaMode::Mask).then_some(AlphaCutoff(0.5)),
         alpha_mode: Checked::Valid(alpha_mode),
@@ -94,8 +108,9 @@ fn surface(look: &Look, infos: Infos) -> gltf_json::Material {
         pbr_metallic_roughness: material::PbrMetallicRoughness {
             base_color_factor: PbrBaseColorFactor([r, g, b, factor(look.opacity)]),
             base_color_texture: base,
-            metallic_factor: StrengthFactor(factor(metallic)),
-            roughness_factor: StrengthFactor(factor(look.undrawn("Pr").unwrap_or(exponent))),
+            metallic_factor: StrengthFactor(factor(look.rough_metal.metalness)),
+            metallic_roughness_texture: rough_metal,
+            roughness_factor: StrengthFactor(factor(look.rough_metal.roughness)),
             ..material::PbrMetallicRoughness::default()
         },
         extensions: Some(extensions),
@@ -107,11 +122,6 @@ fn surface(look: &Look, infos: Infos) -> gltf_json::Material {
 fn strength(look: &Look) -> Option<f64> {
     let most = look.material.emission.into_iter().map(color::linear).fold(0.0, f64::max);
     (most > 1.0 && !look.unlit).then_some(most)
-}
-
-/// Returns the roughness that matches a Phong exponent.
-fn roughness(exponent: f64) -> f64 {
-    libm::pow(2.0 / (4.0 * exponent.max(0.0) + 2.0), 0.25)
 }
 
 /// Clamps a factor to 0..=1; NaN counts as 1.

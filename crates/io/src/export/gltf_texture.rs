@@ -10,10 +10,12 @@ use std::collections::HashMap;
 use gltf_json::validation::Checked;
 use gltf_json::{Index, image, texture};
 
+use super::file_bytes::Encoded;
 use super::gltf::Writer;
 use super::gltf_buffer::single;
 use super::gltf_opacity::{Merging, white_with};
-use super::look::{Look, Pictures};
+use super::look::Look;
+use super::pictures::Pictures;
 use marraztu_core::base::Shared;
 use marraztu_core::scene::{MapKind, Texture, Wrap};
 
@@ -49,7 +51,9 @@ pub(super) fn layouts(look: &Look) -> Vec<Layout> {
         (Some(texture), Some(map)) => Some(Merging::of(texture, map).layout),
         (texture, map) => texture.or(map).map(Layout::of),
     };
-    let others = [MapKind::Emission, MapKind::Normal].map(|kind| map(kind).map(Layout::of));
+    let others =
+        [look.rough_metal.texture.as_deref(), map(MapKind::Emission), map(MapKind::Normal)]
+            .map(|texture| texture.map(Layout::of));
     let mut layouts = Vec::new();
     for layout in base.into_iter().chain(others.into_iter().flatten()) {
         if !layouts.contains(&layout) {
@@ -66,6 +70,8 @@ pub(super) struct Infos {
     pub(super) base: Option<texture::Info>,
     pub(super) emission: Option<texture::Info>,
     pub(super) normal: Option<texture::Info>,
+    /// Roughness and metalness.
+    pub(super) rough_metal: Option<texture::Info>,
     /// The effect of the alpha of `base`.
     pub(super) cover: Cover,
 }
@@ -127,9 +133,10 @@ impl Writer<'_> {
                 extras: Default::default(),
             }
         };
+        let rough_metal = look.rough_metal.texture.as_ref().map(&mut info);
         let mut map = |kind| look.map(kind).map(|map| info(&map.texture));
         let (emission, normal) = (map(MapKind::Emission), map(MapKind::Normal));
-        Infos { base: base.as_ref().map(&mut info), emission, normal, cover }
+        Infos { base: base.as_ref().map(&mut info), emission, normal, rough_metal, cover }
     }
 
     fn texture(
@@ -138,7 +145,7 @@ impl Writer<'_> {
         of: &Shared<Texture>,
     ) -> Index<gltf_json::Texture> {
         // A new picture also gets a name.
-        let number = textures.pictures.number(&of.picture);
+        let number = textures.pictures.number(of);
         if number == textures.names.len() {
             let stem = of.source.file_stem().unwrap_or_default().to_string_lossy().into_owned();
             textures.names.push(stem);
@@ -161,11 +168,13 @@ impl Writer<'_> {
     /// Writes the pictures into the buffer.
     pub(super) fn images(&mut self, textures: Textures) -> Result<(), String> {
         let Textures { pictures, names, .. } = textures;
-        for (bytes, name) in pictures.encoded()?.into_iter().zip(names) {
+        for (encoded, name) in pictures.encoded()?.into_iter().zip(names) {
+            let Encoded { bytes, ending } = encoded?;
+            let kind = if ending == "jpg" { "image/jpeg" } else { "image/png" };
             let view = self.buffer.view(&mut self.root, bytes, None);
             self.root.push(gltf_json::Image {
                 buffer_view: Some(view),
-                mime_type: Some(image::MimeType("image/png".to_owned())),
+                mime_type: Some(image::MimeType(kind.to_owned())),
                 name: Some(name).filter(|name| !name.is_empty()),
                 uri: None,
                 extensions: None,

@@ -4,17 +4,14 @@
 //! pictures. The lookup takes constant time: scenes have up to a hundred thousand materials.
 
 use std::collections::{BTreeSet, HashMap};
+use std::path::PathBuf;
 
-use rayon::prelude::*;
-
-use super::MARK;
+use super::gltf_roughness::{RoughMetal, Scalars};
 use super::names::{Names, on_one_line};
-use crate::picture::png_with_comment;
 use marraztu_core::base::Shared;
-use marraztu_core::base::image::Picture;
 use marraztu_core::scene::{
     FileMaterial, MapKind, Material, MaterialChoice, Object, PresetId, Surface, SurfaceMap,
-    Texture, Undrawn, Wrap,
+    Texture, Undrawn, UndrawnMap, Wrap,
 };
 
 /// The look of a part of an object.
@@ -38,6 +35,10 @@ pub(super) struct Look {
     pub(super) maps: Vec<(MapKind, SurfaceMap)>,
     /// Numbers of the file's material that this program does not draw.
     pub(super) undrawn: Undrawn,
+    /// Maps of the file's material that this program does not draw.
+    pub(super) undrawn_maps: Vec<UndrawnMap>,
+    /// Roughness and metalness, for glTF.
+    pub(super) rough_metal: RoughMetal,
 }
 
 impl Look {
@@ -76,6 +77,8 @@ pub(super) struct Looks {
     numbers: HashMap<Key, usize>,
     names: Names,
     detail: Detail,
+    /// The maps of roughness and metalness read so far.
+    pub(super) scalars: Scalars,
 }
 
 /// Looks with equal keys are equal.
@@ -84,6 +87,8 @@ struct Key {
     name: String,
     numbers: Vec<u64>,
     undrawn: Vec<(&'static str, Vec<u64>)>,
+    undrawn_maps: Vec<[String; 2]>,
+    sources: Vec<PathBuf>,
     maps: Vec<(Option<MapKind>, usize, Wrap, [u64; 5])>,
 }
 
@@ -106,6 +111,8 @@ impl Key {
             name: look.name.clone(),
             numbers: numbers.map(f64::to_bits).chain(flags).collect(),
             undrawn: look.undrawn.iter().map(|(word, of)| (*word, bits(of))).collect(),
+            undrawn_maps: look.undrawn_maps.iter().map(UndrawnMap::words).collect(),
+            sources: look.undrawn_maps.iter().map(|map| map.source.clone()).collect(),
             maps: texture.chain(maps).collect(),
         }
     }
@@ -113,7 +120,8 @@ impl Key {
 
 impl Looks {
     pub(super) fn new(detail: Detail) -> Self {
-        Self { all: Vec::new(), numbers: HashMap::new(), names: Names::default(), detail }
+        let (all, numbers, names) = (Vec::new(), HashMap::new(), Names::default());
+        Self { all, numbers, names, detail, scalars: Scalars::default() }
     }
 
     /// Returns the index of a part's look.
@@ -153,6 +161,9 @@ impl Looks {
         let key = Key::of(&look);
         *self.numbers.entry(key).or_insert_with(|| {
             look.name = self.names.take(&look.name);
+            if self.detail == Detail::Gltf {
+                look.rough_metal = self.scalars.of(&look);
+            }
             self.all.push(look);
             self.all.len() - 1
         })
@@ -187,6 +198,7 @@ impl Looks {
             let is_seen = is_mapped && (!is_bare || kind == MapKind::Opacity);
             Some((kind, shown.map(kind).filter(|_| is_seen)?.clone()))
         };
+        let undrawn = file.filter(|_| of_file);
         Look {
             name: on_one_line(wanted_name(object, file, asked)),
             base: if is_nameless && is_painted { tint } else { material.diffuse },
@@ -197,7 +209,12 @@ impl Looks {
             two_sided: self.detail == Detail::Gltf && object.is_two_sided(),
             unlit: shown.unlit || is_bare,
             maps: MapKind::ALL.into_iter().filter_map(map).collect(),
-            undrawn: file.filter(|_| of_file).map(|file| file.undrawn.clone()).unwrap_or_default(),
+            undrawn: undrawn.map(|file| file.undrawn.clone()).unwrap_or_default(),
+            undrawn_maps: undrawn
+                .filter(|_| is_mapped && object.surface == Surface::TextureAndLight)
+                .map(|file| file.undrawn_maps.clone())
+                .unwrap_or_default(),
+            rough_metal: RoughMetal::default(),
         }
     }
 }
@@ -239,26 +256,4 @@ pub(super) fn has_colors(object: &Object) -> bool {
 pub(super) fn polygons(object: &Object) -> impl Iterator<Item = u32> {
     let parts = object.model.mesh.polygon_parts();
     (0..).zip(parts).filter(|(_, part)| !object.hidden_parts.contains(part)).map(|(i, _)| i)
-}
-
-/// The distinct pictures of an export, shared among textures.
-#[derive(Debug, Default)]
-pub(super) struct Pictures {
-    pub(super) all: Vec<Shared<Picture>>,
-    numbers: HashMap<usize, usize>,
-}
-
-impl Pictures {
-    /// Returns the index of a picture, adding it if it is new.
-    pub(super) fn number(&mut self, picture: &Shared<Picture>) -> usize {
-        *self.numbers.entry(Shared::address(picture)).or_insert_with(|| {
-            self.all.push(picture.clone());
-            self.all.len() - 1
-        })
-    }
-
-    /// Encodes the pictures as PNG, in index order.
-    pub(super) fn encoded(&self) -> Result<Vec<Vec<u8>>, String> {
-        self.all.par_iter().map(|picture| png_with_comment(picture, MARK)).collect()
-    }
 }

@@ -3,19 +3,24 @@
 //! Only visible objects and parts are exported. Features that a format lacks are listed as notes.
 
 mod companion;
+mod file_bytes;
 mod gltf;
 mod gltf_buffer;
 mod gltf_lights;
 mod gltf_mesh;
 mod gltf_opacity;
+mod gltf_roughness;
 mod gltf_surface;
 mod gltf_texture;
 mod look;
 mod names;
 mod obj;
+mod pictures;
 mod placeholders;
 
 use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
 
 use self::companion::check_companion;
 use super::obj::lines::unmarked;
@@ -39,6 +44,22 @@ const MARK: &str = "exported by Marraztu";
 
 /// The extensions of the formats, without the dot.
 pub const EXPORT_ENDINGS: [&str; 3] = ["obj", "gltf", "glb"];
+
+/// The parts of a scene that an export holds besides the visible objects.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ExportOptions {
+    /// Whether it holds the cameras, if the format has cameras.
+    pub cameras: bool,
+    /// Whether it holds the lights that are on, if the format has lights.
+    pub lights: bool,
+}
+
+impl ExportOptions {
+    /// The whole scene.
+    pub const SCENE: Self = Self { cameras: true, lights: true };
+    /// The objects alone: the programs that read them have their own lights.
+    pub const MODELS: Self = Self { cameras: false, lights: false };
+}
 
 /// The result of an export.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -99,6 +120,7 @@ pub fn export(
     path: &Path,
     scene: &Scene,
     view: &View,
+    options: ExportOptions,
     sources: &Sources,
 ) -> Result<Exported, SaveError> {
     let format = Format::of(path)?;
@@ -109,8 +131,8 @@ pub fn export(
         placeholders::without(scene).map_err(|reason| SaveError::new(path, reason))?;
     let scene = &scene;
     let content = match format {
-        Format::Obj => obj::written(&stem, scene, view),
-        Format::Gltf | Format::Glb => gltf::written(&stem, scene, view, format),
+        Format::Obj => obj::written(&stem, scene, view, options),
+        Format::Gltf | Format::Glb => gltf::written(&stem, scene, view, (format, options)),
     };
     let Content { files, notes } = content.map_err(|reason| SaveError::new(path, reason))?;
     let notes = left_out.into_iter().chain(hidden(scene)).chain(notes).collect();
@@ -121,9 +143,9 @@ pub fn export(
     };
     let files: Vec<(PathBuf, Vec<u8>)> = files.into_iter().enumerate().map(named).collect();
     // Check every companion before the first write: a refused export leaves no files.
-    for (companion, _) in &files[..last] {
+    for (companion, bytes) in &files[..last] {
         sources.spare(companion)?;
-        check_companion(companion, path)?;
+        check_companion(companion, bytes, path)?;
     }
     let mut exported = Exported { files: Vec::new(), notes };
     for (file, bytes) in files {

@@ -18,7 +18,7 @@ use glam::{DMat3, DMat4, DVec3};
 use self::called::Names;
 use super::look::{Detail, Looks, has_colors, polygons};
 use super::names::companion;
-use super::{Content, SIGNATURE};
+use super::{Content, ExportOptions, SIGNATURE};
 use crate::stl::has_stl_name;
 use marraztu_core::base::math::{normal_matrix, unit};
 use marraztu_core::scene::{Corner, NONE, Object, Scene, UpAxis, View, dvec3};
@@ -40,7 +40,12 @@ struct Writer {
 }
 
 /// Writes the files.
-pub(super) fn written(stem: &str, scene: &Scene, view: &View) -> Result<Content, String> {
+pub(super) fn written(
+    stem: &str,
+    scene: &Scene,
+    view: &View,
+    options: ExportOptions,
+) -> Result<Content, String> {
     let objects = scene.objects.iter().map(|(_, object)| object);
     let visible: Vec<&Object> = objects.filter(|object| object.visible).collect();
     let up = up_axis(&visible);
@@ -71,10 +76,12 @@ pub(super) fn written(stem: &str, scene: &Scene, view: &View) -> Result<Content,
     if !writer.looks.all.is_empty() {
         let stem = companion(stem);
         let _ = writeln!(head, "mtllib {stem}.mtl");
-        content.files = mtl::written(&stem, &writer.looks)?;
+        content = mtl::written(&stem, &writer.looks)?;
     }
     content.files.push((format!("{stem}.obj"), (head + &writer.text).into_bytes()));
-    content.notes.push("OBJ has no cameras or lights: they are left out".to_owned());
+    if options != ExportOptions::MODELS {
+        content.notes.push("OBJ has no cameras or lights: they are left out".to_owned());
+    }
     Ok(content)
 }
 

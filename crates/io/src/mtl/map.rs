@@ -16,6 +16,8 @@ pub(super) struct Map {
     pub(super) gain: f64,
     /// Options that would change the picture but are ignored.
     pub(super) ignored: Vec<&'static str>,
+    /// All options as in the file.
+    pub(super) options: String,
 }
 
 /// Options that would change the picture but are ignored, with their numbers of arguments:
@@ -31,7 +33,9 @@ pub(super) fn map(rest: &[u8]) -> Option<Map> {
         scale: [1.0; 2],
         gain: 1.0,
         ignored: Vec::new(),
+        options: String::new(),
     };
+    let mut options = Vec::new();
     let text = decode(rest);
     let words = words_with_places(&text);
     // The range of the name in the text, which keeps blanks inside it.
@@ -42,13 +46,18 @@ pub(super) fn map(rest: &[u8]) -> Option<Map> {
             break;
         }
         match map.option(word, &words[at + 1..]) {
-            Some(arguments) => at += arguments,
+            Some(arguments) => {
+                let end = words.len().min(at + 1 + arguments);
+                options.extend(words[at..end].iter().map(|(_, word)| *word));
+                at += arguments;
+            }
             None => name = Some((name.map_or(begin, |(first, _)| first), begin + word.len())),
         }
         at += 1;
     }
     let (begin, end) = name?;
     map.name = statement::texture(&text[begin..end])?;
+    map.options = options.join(" ");
     Some(map)
 }
 
@@ -113,6 +122,7 @@ mod tests {
             scale: [1.0; 2],
             gain: 1.0,
             ignored: Vec::new(),
+            options: String::new(),
         };
         assert_eq!(map("a  b.png"), Some(plain.clone()));
         assert_eq!(
@@ -123,6 +133,7 @@ mod tests {
                 scale: [2.0, 3.0],
                 gain: 1.5,
                 ignored: vec!["-mm", "-imfchan"],
+                options: "-clamp on -o 0.1 -s 2 3 0 -mm 0 1 -imfchan r -bm 1.5".into(),
                 ..plain
             })
         );

@@ -54,8 +54,18 @@ impl Statements {
         // Scans have vertex colours and a texture made from the same photographs.
         let multiplies_colors = texture.is_none();
         let material = Material { ambient, diffuse, specular, exponent, emission };
-        let (name, undrawn) = (self.name, self.undrawn);
-        FileMaterial { name, material, opacity, texture, maps, unlit, multiplies_colors, undrawn }
+        let (name, undrawn, undrawn_maps) = (self.name, self.undrawn, Vec::new());
+        FileMaterial {
+            name,
+            material,
+            opacity,
+            texture,
+            maps,
+            unlit,
+            multiplies_colors,
+            undrawn,
+            undrawn_maps,
+        }
     }
 
     /// Emission may exceed 1, but not fall below 0.

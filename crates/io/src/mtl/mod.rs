@@ -27,7 +27,8 @@ use super::texture::{Pictures, Read};
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::Picture;
 use marraztu_core::scene::{
-    BumpMaps, FileMaterial, MapKind, NONE, SurfaceMap, SurfaceMaps, Texture, Undrawn, Wrap,
+    BumpMaps, FileMaterial, MapKind, NONE, SurfaceMap, SurfaceMaps, Texture, Undrawn, UndrawnMap,
+    Wrap,
 };
 
 /// The most texels of all textures of a model: 2 GB.
@@ -92,6 +93,8 @@ struct Statements {
     /// The other maps.
     maps: BTreeMap<MapKind, (u32, Map)>,
     undrawn: Undrawn,
+    /// The maps that are not drawn, with their keywords.
+    undrawn_maps: Vec<(String, Map)>,
 }
 
 impl<'a> Library<'a> {
@@ -195,8 +198,9 @@ impl<'a> Library<'a> {
         }
         // A packed Ks holds occlusion, roughness and metalness, so its map is not a specular map.
         if statements.is_packed
-            && let Some((line, _)) = statements.maps.remove(&MapKind::Specular)
+            && let Some((line, map)) = statements.maps.remove(&MapKind::Specular)
         {
+            statements.keep_packed_map(&map);
             findings.add(FindingKind::MapUnused, "map_Ks", Some(line));
         }
         statements.unpack();
@@ -222,7 +226,9 @@ impl<'a> Library<'a> {
             line: statements.line,
             is_own: statements.is_own,
         });
-        self.materials.push(statements.mended((texture, maps), findings));
+        let undrawn_maps = self.undrawn_maps(&statements.undrawn_maps, folders);
+        let material = statements.mended((texture, maps), findings);
+        self.materials.push(FileMaterial { undrawn_maps, ..material });
     }
 
     /// Reads a bump map that contains normals as a normal map, since Blender and others write it
@@ -258,18 +264,12 @@ impl<'a> Library<'a> {
         folders: [&Path; 2],
         note: &mut dyn FnMut(FindingKind, &str),
     ) -> Option<Shared<Texture>> {
-        // Searches are cached and limited, because each takes several disk accesses.
-        let key = (folders[0].to_owned(), map.name.clone());
-        if self.found.len() >= MOST_NAMES && !self.found.contains_key(&key) {
-            note(FindingKind::TextureMany, "");
-            return None;
-        }
-        let mut locate = |folder| self.locator.locate(folder, &map.name);
-        let path =
-            self.found.entry(key).or_insert_with(|| folders.into_iter().find_map(&mut locate));
-        let Some(path) = path.clone() else {
-            note(FindingKind::TextureMissing, &map.name);
-            return None;
+        let path = match self.located(&map.name, folders) {
+            Ok(path) => path,
+            Err(kind) => {
+                note(kind, if kind == FindingKind::TextureMissing { &map.name } else { "" });
+                return None;
+            }
         };
         // Maps with equal files and layouts share a texture.
         let bits = [map.offset, map.scale].concat();
@@ -283,6 +283,37 @@ impl<'a> Library<'a> {
         let texture = Shared::new(Texture { source: path, picture, wrap, offset, scale });
         self.textures.insert(key, texture.clone());
         Some(texture)
+    }
+
+    /// Searches for the file of a map; fails with the finding about it. Searches are cached and
+    /// limited, because each takes several disk accesses.
+    fn located(&mut self, name: &str, folders: [&Path; 2]) -> Result<PathBuf, FindingKind> {
+        let key = (folders[0].to_owned(), name.to_owned());
+        if self.found.len() >= MOST_NAMES && !self.found.contains_key(&key) {
+            return Err(FindingKind::TextureMany);
+        }
+        let mut locate = |folder| self.locator.locate(folder, name);
+        let path =
+            self.found.entry(key).or_insert_with(|| folders.into_iter().find_map(&mut locate));
+        path.clone().ok_or(FindingKind::TextureMissing)
+    }
+
+    /// Finds the files of maps that are not drawn. A missing file keeps its name.
+    fn undrawn_maps(&mut self, maps: &[(String, Map)], folders: [&Path; 2]) -> Vec<UndrawnMap> {
+        let found = |(keyword, map): &(String, Map)| {
+            let missing = |_| folders[0].join(&map.name);
+            let source = self.located(&map.name, folders).unwrap_or_else(missing);
+            let Map { wrap, offset, scale, .. } = *map;
+            UndrawnMap {
+                keyword: keyword.clone(),
+                options: map.options.clone(),
+                source,
+                wrap,
+                offset,
+                scale,
+            }
+        };
+        maps.iter().map(found).collect()
     }
 
     /// Decodes the picture of a file, unless it exceeds [`MOST_TEXELS`] together with earlier ones.
@@ -374,8 +405,10 @@ impl Statements {
                 Some(map) => _ = self.maps.insert(kind, (line.number, map)),
                 None => note(FindingKind::MapUnnamed),
             },
-            b"disp" | b"decal" | b"refl" => note(FindingKind::MapUnused),
-            _ if plain.starts_with(b"map_") => note(FindingKind::MapUnused),
+            _ if plain.starts_with(b"map_") || matches!(&*plain, b"disp" | b"decal" | b"refl") => {
+                note(FindingKind::MapUnused);
+                self.undrawn_maps.extend(map(rest).map(|map| (decode(keyword), map)));
+            }
             _ if self.keep_undrawn(keyword, rest) => {}
             _ => note(FindingKind::Unknown),
         }

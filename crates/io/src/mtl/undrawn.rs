@@ -1,5 +1,7 @@
-//! Keeps numbers of a material that are not drawn, since exports pass them on to other programs.
+//! Keeps numbers and maps of a material that are not drawn, since exports pass them on to other
+//! programs.
 
+use super::map::Map;
 use super::{Statements, statement};
 
 /// Refraction, filters, sharpness, and physically based shading.
@@ -26,6 +28,15 @@ impl Statements {
         self.undrawn.remove("illum");
         if let Some(model) = self.illumination.filter(|model| MODELS.contains(model)) {
             self.undrawn.insert("illum", vec![model]);
+        }
+    }
+
+    /// Keeps the map of a packed Ks as maps of roughness and metalness.
+    pub(super) fn keep_packed_map(&mut self, map: &Map) {
+        for (keyword, channel) in [("map_Pr", "g"), ("map_Pm", "b")] {
+            let options = format!("{} -imfchan {channel}", map.options);
+            let map = Map { options: options.trim().to_owned(), ..map.clone() };
+            self.undrawn_maps.push((keyword.to_owned(), map));
         }
     }
 

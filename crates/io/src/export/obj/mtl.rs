@@ -1,48 +1,89 @@
 //! The materials of an exported OBJ file: MTL and textures.
 
+use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use crate::export::SIGNATURE;
-use crate::export::look::{Look, Looks, Pictures};
+use crate::error::short_name;
+use crate::export::file_bytes::Encoded;
+use crate::export::look::{Look, Looks};
+use crate::export::pictures::Pictures;
+use crate::export::{Content, SIGNATURE};
 use marraztu_core::scene::{MapKind, Texture, Wrap};
 
 /// Writes the textures and the MTL file. Their names begin with `stem`.
-pub(super) fn written(stem: &str, looks: &Looks) -> Result<Vec<(String, Vec<u8>)>, String> {
-    let mut mtl = String::from(SIGNATURE);
+pub(super) fn written(stem: &str, looks: &Looks) -> Result<Content, String> {
+    // The extension of a picture is known when it is encoded, so all pictures come first.
     let mut pictures = Pictures::default();
     for look in &looks.all {
-        coefficients(&mut mtl, look);
-        let mut map = |statement: &str, texture: &Texture| {
-            let file = texture_name(stem, pictures.number(&texture.picture));
-            map_to(&mut mtl, statement, texture, &file);
+        statements(look, &mut pictures, &mut |_, _| {});
+    }
+    let mut content = Content::default();
+    let (mut names, mut reasons) = (Vec::new(), Vec::new());
+    for (i, encoded) in pictures.encoded()?.into_iter().enumerate() {
+        let (name, reason) = match encoded {
+            Ok(Encoded { bytes, ending }) => {
+                let name = format!("{stem}-texture-{}.{ending}", i + 1);
+                content.files.push((name.clone(), bytes));
+                (Some(name), None)
+            }
+            Err(reason) => (None, Some(reason)),
         };
-        if let Some(texture) = &look.texture {
-            map("map_Kd", texture);
-        }
-        for (kind, of) in &look.maps {
-            match kind {
-                MapKind::Bump if of.gain != 1.0 => {
-                    map(&format!("bump -bm {}", of.gain), &of.texture);
-                }
-                kind => map(kind.statement(), &of.texture),
-            }
-            // Blender and others read normal maps only from this statement.
-            if *kind == MapKind::Normal && look.map(MapKind::Bump).is_none() {
-                map("map_Bump -bm 1", &of.texture);
-            }
-        }
+        names.push(name);
+        reasons.push(reason);
     }
-    let mut files = Vec::new();
-    for (i, bytes) in pictures.encoded()?.into_iter().enumerate() {
-        files.push((texture_name(stem, i), bytes));
+    let mut mtl = String::from(SIGNATURE);
+    for look in &looks.all {
+        coefficients(&mut mtl, look);
+        statements(look, &mut pictures, &mut |statement, number| {
+            if let Some(name) = &names[number] {
+                let _ = writeln!(mtl, "{statement} {name}");
+            }
+        });
     }
-    files.push((format!("{stem}.mtl"), mtl.into_bytes()));
-    Ok(files)
+    content.notes = left_out(looks, &mut pictures, &reasons);
+    content.files.push((format!("{stem}.mtl"), mtl.into_bytes()));
+    Ok(content)
 }
 
-/// Returns the file name of a picture by its index.
-fn texture_name(stem: &str, number: usize) -> String {
-    format!("{stem}-texture-{}.png", number + 1)
+/// Passes on each map statement of a look, without its file, and the index of its picture.
+fn statements(look: &Look, pictures: &mut Pictures, pass: &mut dyn FnMut(&str, usize)) {
+    let mut map = |keyword: &str, texture: &Texture| {
+        let number = pictures.number(texture);
+        pass(&format!("{keyword}{}", options(texture)), number);
+    };
+    if let Some(texture) = &look.texture {
+        map("map_Kd", texture);
+    }
+    for (kind, of) in &look.maps {
+        match kind {
+            MapKind::Bump if of.gain != 1.0 => {
+                map(&format!("bump -bm {}", of.gain), &of.texture);
+            }
+            kind => map(kind.statement(), &of.texture),
+        }
+        // Blender and others read normal maps only from this statement.
+        if *kind == MapKind::Normal && look.map(MapKind::Bump).is_none() {
+            map("map_Bump -bm 1", &of.texture);
+        }
+    }
+    // Statements that this program does not draw keep their options.
+    for map in &look.undrawn_maps {
+        let number = pictures.number_of_file(&map.source);
+        let [keyword, options] = map.words();
+        pass(format!("{keyword} {options}").trim_end(), number);
+    }
+}
+
+/// Notes the maps with files that cannot be copied, by the reasons of each picture.
+fn left_out(looks: &Looks, pictures: &mut Pictures, reasons: &[Option<String>]) -> Vec<String> {
+    let mut notes = BTreeSet::new();
+    for map in looks.all.iter().flat_map(|look| &look.undrawn_maps) {
+        if let Some(reason) = &reasons[pictures.number_of_file(&map.source)] {
+            let name = short_name(&map.source);
+            notes.insert(format!("{} {name} is left out: {reason}", map.keyword));
+        }
+    }
+    notes.into_iter().collect()
 }
 
 fn coefficients(mtl: &mut String, look: &Look) {
@@ -73,17 +114,17 @@ fn coefficients(mtl: &mut String, look: &Look) {
     let _ = writeln!(mtl, "illum {illumination}");
 }
 
-/// Writes a map statement with the layout and the file of its picture.
-fn map_to(mtl: &mut String, statement: &str, texture: &Texture, file: &str) {
-    mtl.push_str(statement);
+/// Returns the options of a map statement, each after a blank.
+fn options(texture: &Texture) -> String {
+    let mut options = String::new();
     if texture.wrap == Wrap::Clamp {
-        mtl.push_str(" -clamp on");
+        options.push_str(" -clamp on");
     }
     if texture.offset != [0.0; 2] {
-        let _ = write!(mtl, " -o {} {} 0", texture.offset[0], texture.offset[1]);
+        let _ = write!(options, " -o {} {} 0", texture.offset[0], texture.offset[1]);
     }
     if texture.scale != [1.0; 2] {
-        let _ = write!(mtl, " -s {} {} 1", texture.scale[0], texture.scale[1]);
+        let _ = write!(options, " -s {} {} 1", texture.scale[0], texture.scale[1]);
     }
-    let _ = writeln!(mtl, " {file}");
+    options
 }
