@@ -65,7 +65,7 @@ impl Spool {
         self.file.flush()?;
         let file = self.file.get_mut();
         file.seek(SeekFrom::Start(place.start))?;
-        file.by_ref().take(place.end - place.start).read_to_end(record)?;
+        Read::by_ref(file).take(place.end - place.start).read_to_end(record)?;
         file.seek(SeekFrom::Start(self.end))?;
         Ok(())
     }

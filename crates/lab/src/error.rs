@@ -8,7 +8,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::flip::Perceived;
-use super::lost::lost;
+use super::lost::{PixelSurface, flat_surface, lost};
 use marraztu_core::base::image::Picture;
 
 /// A picture with the primitive at each pixel.
@@ -17,8 +17,8 @@ pub struct Rendering {
     picture: Picture,
     /// The primitive at each pixel.
     primitives: Vec<u32>,
-    /// The object at each pixel, 0 for the background.
-    objects: Vec<u32>,
+    /// The surface at each pixel.
+    surfaces: Vec<PixelSurface>,
     /// Whether pixels may show several primitives.
     mixed: bool,
     seen: Perceived,
@@ -150,16 +150,15 @@ impl Rendering {
     pub fn new(picture: Picture, primitives: Vec<u32>) -> Self {
         assert_eq!(picture.pixels().len(), primitives.len(), "every pixel shows something");
         let seen = Perceived::new(&picture);
-        let objects = primitives.iter().map(|primitive| u32::from(*primitive != 0)).collect();
-        Self { picture, primitives, objects, mixed: false, seen }
+        let surfaces = flat_surface(&primitives);
+        Self { picture, primitives, surfaces, mixed: false, seen }
     }
 
-    /// Adds the object at each pixel, 0 for the background; without it, all primitives are one
-    /// object.
+    /// Adds the surface at each pixel; without them, all primitives are of one flat surface.
     #[must_use]
-    pub fn of_objects(self, objects: Vec<u32>) -> Self {
-        assert_eq!(objects.len(), self.primitives.len(), "every pixel shows something");
-        Self { objects, ..self }
+    pub fn of_surfaces(self, surfaces: Vec<PixelSurface>) -> Self {
+        assert_eq!(surfaces.len(), self.primitives.len(), "every pixel shows something");
+        Self { surfaces, ..self }
     }
 
     /// Marks that each pixel has several samples, and may show several primitives.
@@ -191,7 +190,7 @@ impl Rendering {
             inside: inside.figures(),
             coverage: whole.pixels - inside.pixels,
             flip: self.seen.difference(&reference.seen),
-            lost: lost(&self.objects, &reference.objects, self.picture.size().width),
+            lost: lost(&self.surfaces, &reference.surfaces, self.picture.size().width),
         }
     }
 

@@ -23,7 +23,7 @@ pub mod front;
 pub mod hash;
 pub mod instructions;
 pub mod kernels;
-mod lost;
+pub mod lost;
 pub mod pairs;
 pub mod picture_source;
 pub mod pictures;

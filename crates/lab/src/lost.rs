@@ -3,9 +3,14 @@
 //! A picture without the surfaces that take time is quick, so its time must not be compared with
 //! times of whole pictures. Pixels are compared by blocks of 8 x 8: an edge that is a pixel off, or
 //! a hole here and there, loses nothing. An object is lost in a block if the picture shows it in
-//! less than a quarter of the pixels that the reference does.
+//! less than a quarter of the pixels that the reference does. A pixel that shows another object as
+//! near is not lost: coarse depths mix up surfaces, but draw all of them.
 
 use std::collections::BTreeMap;
+
+/// What a pixel shows: the number of an object, 0 for the background, and the depth: 1 at the near
+/// plane, 0 at the far plane.
+pub type PixelSurface = (u32, f32);
 
 /// The side of a block in pixels.
 const SIDE: usize = 8;
@@ -13,24 +18,28 @@ const SIDE: usize = 8;
 /// Objects in fewer pixels of a block are ignored: sampling decides whether they are seen.
 const LEAST: u32 = 8;
 
-/// Returns the part of the reference's surfaces that the picture lacks, from 0 to 1. Both are given
-/// by the object at each pixel, 0 for the background, in rows of `width` pixels.
-pub(crate) fn lost(shown: &[u32], reference: &[u32], width: usize) -> f64 {
+/// The largest relative and absolute differences of equal depths; depths in 16 bits have steps of
+/// 1.5e-5.
+const NEAR: [f32; 2] = [0.01, 3e-5];
+
+/// Returns the surfaces at pixels that show these primitives, 0 for the background, as one object.
+pub(crate) fn flat_surface(primitives: &[u32]) -> Vec<PixelSurface> {
+    primitives.iter().map(|primitive| (u32::from(*primitive != 0), 0.5)).collect()
+}
+
+/// Returns the part of the reference's surfaces that the picture lacks, from 0 to 1. Pixels are in
+/// rows of `width`.
+pub(crate) fn lost(shown: &[PixelSurface], reference: &[PixelSurface], width: usize) -> f64 {
     let height = reference.len() / width.max(1);
     let (mut all, mut lost) = (0_u64, 0_u64);
     for top in (0..height).step_by(SIDE) {
         for left in (0..width).step_by(SIDE) {
-            // The pixels of each object in the reference and in the picture.
-            let mut counts: BTreeMap<u32, [u32; 2]> = BTreeMap::new();
             let rows = (top..height.min(top + SIDE)).map(|y| y * width);
             let pixels = rows.flat_map(|row| row + left..row + width.min(left + SIDE));
-            for at in pixels {
-                counts.entry(reference[at]).or_default()[0] += 1;
-                counts.entry(shown[at]).or_default()[1] += 1;
-            }
-            for (_, [expected, seen]) in counts.range(1..).filter(|(_, of)| of[0] >= LEAST) {
-                all += u64::from(*expected);
-                lost += if 4 * seen < *expected { u64::from(*expected) } else { 0 };
+            let counts = counts(shown, reference, pixels);
+            for [expected, seen] in counts.into_values().filter(|of| of[0] >= LEAST) {
+                all += u64::from(expected);
+                lost += if 4 * seen < expected { u64::from(expected) } else { 0 };
             }
         }
     }
@@ -39,19 +48,41 @@ pub(crate) fn lost(shown: &[u32], reference: &[u32], width: usize) -> f64 {
     part
 }
 
+/// Counts the pixels of each object in the reference, and the pixels in which the picture shows it
+/// or another object as near.
+fn counts(
+    shown: &[PixelSurface],
+    reference: &[PixelSurface],
+    pixels: impl Iterator<Item = usize>,
+) -> BTreeMap<u32, [u32; 2]> {
+    let [relative, absolute] = NEAR;
+    let mut counts: BTreeMap<u32, [u32; 2]> = BTreeMap::new();
+    for at in pixels {
+        let ((object, depth), (expected, near)) = (shown[at], reference[at]);
+        counts.entry(expected).or_default()[0] += 1;
+        counts.entry(object).or_default()[1] += 1;
+        let is_as_near = depth >= near * (1.0 - relative) - absolute;
+        if object != expected && object != 0 && is_as_near {
+            counts.entry(expected).or_default()[1] += 1;
+        }
+    }
+    counts.remove(&0);
+    counts
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     const WIDTH: usize = 32;
 
-    /// A picture of 32 x 16 pixels: a floor (1) in the lower half, a column (2) on it, and whatever
-    /// is behind.
-    fn picture(behind: u32) -> Vec<u32> {
+    /// A picture of 32 x 16 pixels: a floor (1) in the lower half, a column (2) on it, and farther
+    /// away whatever is behind.
+    fn picture(behind: u32) -> Vec<PixelSurface> {
         let pixel = |i: usize| match (i % WIDTH, i / WIDTH) {
-            (4..12, _) => 2,
-            (_, 8..) => 1,
-            _ => behind,
+            (4..12, _) => (2, 0.2),
+            (_, 8..) => (1, 0.1),
+            _ => (behind, 0.01),
         };
         (0..16 * WIDTH).map(pixel).collect()
     }
@@ -61,18 +92,30 @@ mod tests {
         // The floor is 24 columns of 8 rows; 320 or all 512 pixels show a surface.
         for (behind, part) in [(0, 192.0 / 320.0), (3, 192.0 / 512.0)] {
             let whole = picture(behind);
-            let shown: Vec<u32> = whole.iter().map(|i| if *i == 1 { behind } else { *i }).collect();
+            let without = |of: &PixelSurface| if of.0 == 1 { (behind, 0.01) } else { *of };
+            let shown: Vec<PixelSurface> = whole.iter().map(without).collect();
             assert_eq!(lost(&shown, &whole, WIDTH), part);
-            assert_eq!(lost(&vec![0; whole.len()], &whole, WIDTH), 1.0);
+            assert_eq!(lost(&vec![(0, 0.0); whole.len()], &whole, WIDTH), 1.0);
         }
+    }
+
+    #[test]
+    fn a_surface_behind_another_one_at_the_same_depth_is_not_lost() {
+        let whole = picture(3);
+        let swapped = |depth: f32| -> Vec<PixelSurface> {
+            whole.iter().map(|of| if of.0 == 1 { (4, depth) } else { *of }).collect()
+        };
+        assert_eq!(lost(&swapped(0.0995), &whole, WIDTH), 0.0);
+        assert!(lost(&swapped(0.09), &whole, WIDTH) > 0.3);
     }
 
     #[test]
     fn a_shift_by_a_pixel_and_holes_in_every_second_pixel_lose_nothing() {
         let whole = picture(3);
-        let shifted: Vec<u32> = (0..whole.len()).map(|i| whole[i.saturating_sub(1)]).collect();
-        let holes = |(i, of): (usize, &u32)| if i % 2 == 0 { *of } else { 0 };
-        let holes: Vec<u32> = whole.iter().enumerate().map(holes).collect();
+        let shifted: Vec<PixelSurface> =
+            (0..whole.len()).map(|i| whole[i.saturating_sub(1)]).collect();
+        let holes = |(i, of): (usize, &PixelSurface)| if i % 2 == 0 { *of } else { (0, 0.0) };
+        let holes: Vec<PixelSurface> = whole.iter().enumerate().map(holes).collect();
         for shown in [&whole, &shifted, &holes] {
             assert_eq!(lost(shown, &whole, WIDTH), 0.0);
         }
@@ -81,14 +124,14 @@ mod tests {
     #[test]
     fn points_farther_apart_than_pixels_are_a_lost_surface() {
         let whole = picture(3);
-        let few = |(i, of): (usize, &u32)| if i % 11 == 0 { *of } else { 0 };
-        let few: Vec<u32> = whole.iter().enumerate().map(few).collect();
+        let few = |(i, of): (usize, &PixelSurface)| if i % 11 == 0 { *of } else { (0, 0.0) };
+        let few: Vec<PixelSurface> = whole.iter().enumerate().map(few).collect();
         assert_eq!(lost(&few, &whole, WIDTH), 1.0);
     }
 
     #[test]
     fn a_picture_without_surfaces_lacks_none() {
-        assert_eq!(lost(&[0; 64], &[0; 64], 8), 0.0);
+        assert_eq!(lost(&[(0, 0.0); 64], &[(0, 0.0); 64], 8), 0.0);
         assert_eq!(lost(&[], &[], 0), 0.0);
     }
 }

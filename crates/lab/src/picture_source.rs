@@ -2,6 +2,7 @@
 
 use super::error::Rendering;
 use super::hash::fnv1a;
+use super::lost::{PixelSurface, flat_surface};
 use marraztu_core::accuracy::Shot;
 use marraztu_core::accuracy::{Axis, AxisKind, Samples, Settings, uncapitalized};
 use marraztu_core::base::image::Picture;
@@ -67,9 +68,10 @@ pub trait PictureSource {
     fn picture(&self) -> &Picture;
     /// Returns the primitive at each pixel of the last picture.
     fn primitives(&mut self) -> Vec<u32>;
-    /// Returns the object at each pixel of the last picture, 0 for the background.
-    fn objects(&mut self) -> Vec<u32> {
-        self.primitives().into_iter().map(|primitive| u32::from(primitive != 0)).collect()
+    /// Returns the surface at each pixel of the last picture. By default all primitives are of one
+    /// flat surface.
+    fn surfaces(&mut self) -> Vec<PixelSurface> {
+        flat_surface(&self.primitives())
     }
 
     /// Draws the picture for these settings, to be judged.
@@ -81,8 +83,8 @@ pub trait PictureSource {
     /// Returns the last picture, which has these settings, to be judged.
     fn last_rendering(&mut self, settings: &Settings) -> Rendering {
         let primitives = self.primitives();
-        let objects = self.objects();
-        let rendering = Rendering::new(self.picture().clone(), primitives).of_objects(objects);
+        let surfaces = self.surfaces();
+        let rendering = Rendering::new(self.picture().clone(), primitives).of_surfaces(surfaces);
         if settings.samples == Samples::One { rendering } else { rendering.mixed() }
     }
 }
@@ -147,11 +149,11 @@ impl PictureSource for Studio {
         self.renderer.primitives()
     }
 
-    fn objects(&mut self) -> Vec<u32> {
+    fn surfaces(&mut self) -> Vec<PixelSurface> {
         if self.progress.is_cancelled() {
-            return vec![0; self.picture().pixels().len()];
+            return vec![(0, 0.0); self.picture().pixels().len()];
         }
-        self.renderer.objects()
+        self.renderer.surfaces()
     }
 }
 

@@ -272,7 +272,10 @@ impl CanvasShell {
         do_waiting();
         // A scene that is being opened replaces the notices, too.
         if self.app.loading.is_empty() {
-            self.app.state.notices.extend(self.told.drain(..).map(|text| Notice::new(NoticeKind::Program, text)));
+            self.app
+                .state
+                .notices
+                .extend(self.told.drain(..).map(|text| Notice::new(NoticeKind::Program, text)));
         }
         let mut input = self.input.take();
         input.time = Some(time);

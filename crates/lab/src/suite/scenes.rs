@@ -131,8 +131,9 @@ pub(super) fn pixels(_: u32) -> (Scene, View) {
     stage(vec![placed], DVec3::new(0.0, 0.0, 220.0))
 }
 
-/// A place at which f32 has steps of a unit.
-const AWAY: DVec3 = DVec3::new(1e7, 3e6, -7e6);
+/// A place at which f32 has steps of a unit along x. Close to the middle of two steps, it is
+/// rounded down, and a place at a fiftieth of a unit from it is rounded up.
+const AWAY: DVec3 = DVec3::new(10_000_000.49, 3_000_000.62, -7_000_000.43);
 
 /// Builds a million triangles in a wavy grid, far from the origin.
 pub(super) fn vertices(detail: u32) -> (Scene, View) {
@@ -154,7 +155,7 @@ pub(super) fn vertices(detail: u32) -> (Scene, View) {
     }
     let placement = DMat4::from_translation(AWAY);
     let placed = object(maker.model("waves"), shiny([0.3, 0.6, 0.8], 20.0), placement);
-    stage(vec![placed], AWAY + DVec3::new(0.0, 0.0, 400.0))
+    stage(vec![placed], AWAY + DVec3::new(0.02, 0.01, 400.0))
 }
 
 /// Builds balls with exponents from 5 to 500, coarse enough for vertex lighting to miss highlights;
@@ -231,7 +232,7 @@ pub(super) fn far(_: u32) -> (Scene, View) {
         ship.placement = Tracked::new(DMat4::from_translation(AWAY));
         ship
     });
-    stage(ship.into_iter().collect(), AWAY + DVec3::new(0.0, 15.0, 120.0))
+    stage(ship.into_iter().collect(), AWAY + DVec3::new(0.02, 15.01, 120.0))
 }
 
 /// Builds pairs of plates 0.001 apart, the nearer one smaller, from 2 to 2000 units away.

@@ -223,21 +223,22 @@ impl Renderer {
         self.spread(pixels)
     }
 
-    /// Returns the object or camera shown by each pixel, row by row from the top: 0 for the
-    /// background, else a number that is unique to each item of the scene.
+    /// Returns the surface shown by each pixel, row by row from the top: the number of its object
+    /// or camera, 0 for the background, and its depth, as in [`Hit::depth`].
     #[must_use]
-    pub fn objects(&mut self) -> Vec<u32> {
-        let mut pixels = vec![0; self.seen_size().area()];
+    pub fn surfaces(&mut self) -> Vec<(u32, f32)> {
+        let mut pixels = vec![(0, 0.0); self.seen_size().area()];
         let mut last = (None, 0);
         self.look(|renderer, plan, at, word, _| {
             // Neighbouring pixels mostly show the same primitive.
             let primitive = Some(primitive(word));
             if last.0 != primitive {
-                let item =
-                    renderer.seen(plan, word).map(|(draw, _)| plan.draws[draw as usize].item);
+                let seen = renderer.seen(plan, word);
+                let item = seen.map(|(draw, _)| plan.draws[draw as usize].item);
                 last = (primitive, item.map_or(0, number_of));
             }
-            pixels[at] = last.1;
+            let depth = depth_format::depth(plan.variants.depth, entries::key(word));
+            pixels[at] = (last.1, if last.1 == 0 { 0.0 } else { depth });
             ControlFlow::Continue(())
         });
         self.spread(pixels)

@@ -149,8 +149,8 @@ impl<T: ShadingNumber> Barycentrics<T> {
                 self.weights[0][i] = T::from_f64(second);
                 self.weights[1][i] = T::from_f64(third);
                 self.w[i] = T::from_f64(w);
-                // Perspective-correct weights are clamped to the triangle, and light is evaluated at
-                // their point.
+                // Perspective-correct weights are clamped to the triangle, and light is evaluated
+                // at their point.
                 if fragments.shared {
                     let ([second, third], _) = of.exact().at([fragments.x[i], fragments.y[i]]);
                     let weights = DVec3::new(1.0 - second - third, second, third);

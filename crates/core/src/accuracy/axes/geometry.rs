@@ -64,8 +64,8 @@ pub(super) const COVERAGE: Axis = Axis {
         choice!("points" "Points" coverage = Coverage::Points,
             "Ancestor A's fill algorithm: points every 0.1 unit in camera space, each drawn \
                 separately.",
-            "holes nearer than 97 units; a floor under a level camera vanishes; 17 writes per pixel \
-                at a distance of 400")
+            "holes nearer than 97 units; a floor under a level camera vanishes; 17 writes per \
+                pixel at a distance of 400")
         .slower_because("most of its points fall on pixels that are already set"),
         choice!("scan-lines" "Scan lines" coverage = Coverage::ScanLines,
             "Ancestor B's fill algorithm: row by row, between edges rounded to whole pixels.",
