@@ -172,9 +172,9 @@ fn an_amount_that_arrives_within_one_frame_is_typed_as_a_whole() {
     let ctx = editor.harness.ctx.clone();
     editor.harness.state_mut().perform(&ctx, Action::TypeAmount, Gesture::Whole);
     for (key, text) in [(Key::Z, "z"), (Key::Num2, "2"), (Key::Num0, "0")] {
-        editor.key(key, true, egui::Modifiers::NONE);
-        editor.harness.event(egui::Event::Text(text.to_owned()));
-        editor.key(key, false, egui::Modifiers::NONE);
+        editor.key(key, true, Modifiers::NONE);
+        editor.harness.event(Event::Text(text.to_owned()));
+        editor.key(key, false, Modifiers::NONE);
     }
     editor.settle();
     editor.press(Named(Key::Enter));

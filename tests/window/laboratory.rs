@@ -180,9 +180,7 @@ fn measuring_can_be_given_up_and_ends_with_its_scene() {
 #[test]
 fn the_rows_of_the_laboratory_stay_where_they_are_when_measuring_begins_and_ends() {
     let mut editor = editor();
-    let place = |editor: &Editor| {
-        crate::panels::control(editor, Role::RadioButton, "Error metric: RMSE").rect()
-    };
+    let place = |editor: &Editor| control(editor, Role::RadioButton, "Error metric: RMSE").rect();
     let before = place(&editor);
     click(&mut editor, Role::Button, "Thoroughly");
     assert!(lab(&editor).running.is_some());

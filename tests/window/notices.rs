@@ -7,6 +7,7 @@ use std::path::Path;
 
 use egui::Key;
 use egui::accesskit::Role;
+use egui_kittest::kittest::Queryable as _;
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::{Command, Named};
 use marraztu::app::actions::Request;

@@ -33,7 +33,8 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     }
 }
 
-/// Lists the steps, in at most this height; a click goes to the state after a step. Returns whether one was clicked.
+/// Lists the steps, in at most this height; a click goes to the state after a step. Returns whether
+/// one was clicked.
 pub(super) fn list_ui(ui: &mut Ui, state: &State, most: f32, requests: &mut Requests) -> bool {
     let history = &state.history;
     let labels: Vec<&str> = std::iter::once("Beginning").chain(history.steps()).collect();

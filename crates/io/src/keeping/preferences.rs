@@ -46,7 +46,7 @@ pub struct Preferences {
     /// Whether models are reloaded when their files change.
     pub watches: bool,
     /// The up axis of models with files that do not state one. Older versions stored the axis of
-    /// the last model as `up`; nobody had asked for it to be the default.
+    /// the last model as `up`, which no one had chosen as the default.
     #[serde(rename = "default_up")]
     pub up: UpAxis,
     /// Custom key bindings, by action.
