@@ -286,7 +286,7 @@ impl LayerFile {
         let layers = self.layers.iter().filter_map(|layer| content.layer(*layer));
         let layers: Vec<LayerPicture<'_>> = layers.collect();
         let [first, ..] = &layers[..] else { return Err("it has no layer".to_owned()) };
-        let size = content.camera.size;
+        let size = content.camera.intrinsics.size;
         let encoded = match (self.encoding, content.color) {
             (Encoding::Picture(format), Some(color)) if first.kind == LayerKind::Color => {
                 return match stamp {

@@ -82,7 +82,7 @@ impl Stage {
             assert!(at.x.abs().max(at.y.abs()) <= half, "it is outside of the picture: {newest:?}");
             half
         };
-        newest.corners().into_iter().for_each(|corner| drop(seen(corner)));
+        newest.corners().into_iter().for_each(|corner| _ = seen(corner));
         newest.extent().x / (2.0 * seen(newest.centre()))
     }
 }

@@ -56,7 +56,7 @@ fn the_dial_is_measured_when_nothing_moves_and_then_draws_nothing_more() {
     editor.harness.run_steps(5);
     assert_eq!(editor.state().statistics.pictures, pictures);
     let waiting = editor.harness.output().viewport_output.values().map(|it| it.repaint_delay);
-    assert!(waiting.min().unwrap() > std::time::Duration::from_secs(60), "nothing is to come");
+    assert!(waiting.min().unwrap() > Duration::from_secs(60), "nothing is to come");
     // Figures of another view are stale, until that one is measured.
     editor.perform_all(&[Action::SubjectObject, Action::StepXUp]);
     editor.harness.step();

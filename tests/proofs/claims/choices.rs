@@ -14,6 +14,7 @@ use marraztu_core::base::image::Size;
 use marraztu_core::scene::{Scene, View};
 use marraztu_lab::candidates::{Group, Thoroughness, candidates};
 use marraztu_lab::suite::{SUITE, SuiteScene};
+use marraztu_lab::sweep::Question;
 use marraztu_render::{FramePlan, Renderer, plan_frame};
 use rayon::prelude::*;
 
@@ -42,7 +43,8 @@ const GAIN: f64 = 1.5;
 fn counted(suite: &SuiteScene, scene: &Scene, view: &View) -> Vec<Settings> {
     let default = Settings::default();
     let draft = draft();
-    let mut found = candidates(scene, view, &default, &suite.measured(), &Thoroughness::AXIS).all;
+    let question = Question::new(default, suite.measured(), Thoroughness::AXIS);
+    let mut found = candidates(scene, view, &question).all;
     found.retain(|candidate| matches!(candidate.group, Group::Axis(_)));
     let others = found.into_iter().map(|it| it.settings);
     let others = others.filter(|settings| ![default, draft].contains(settings));
