@@ -196,7 +196,8 @@ fn a_triangle_across_the_near_plane_has_spans_on_its_clipped_polygon() {
 /// Light at corners is interpolated on the screen, too.
 #[test]
 fn vertex_light_of_a_clipped_triangle_is_affine() {
-    let path = Path { lit: true, look: |_| (), ..path("", Settings::default()) };
+    let path = path("", Settings::default());
+    let path = Path { lit: true, colored: true, look: |_| (), ..path };
     let settings = Settings { light: LightAt::Vertex, ..path.settings };
     let path = Path { settings, ..path };
     let [exact, affine] = [Interpolation::Perspective, Interpolation::Affine]

@@ -104,8 +104,8 @@ fn a_texture_that_is_missing_or_broken_is_listed_and_the_model_stays() {
     assert_eq!(text, format!("the texture cannot be read: {path}: {reason}"));
 }
 
-/// Loads three materials with these statements of opacity, two of them used. Returns the opacity of the
-/// first, and the findings.
+/// Loads three materials with these statements of opacity, two of them used. Returns the opacity of
+/// the first, and the findings.
 fn with_opacities(given: [&str; 3]) -> (f64, Vec<(FindingKind, usize)>) {
     let material = |(name, given): (&str, &str)| format!("{}{given}\n", RED.replace("red", name));
     let mtl: String = ["a", "b", "c"].into_iter().zip(given).map(material).collect();

@@ -54,8 +54,8 @@ struct State {
 enum Aim {
     /// Everything is framed from these radians to the right of the front, and up.
     From(f64, f64),
-    /// A matrix from camera to world, with the axes of OpenGL, and the numbers f_x, f_y, c_x and c_y
-    /// of the lens in pixels.
+    /// A matrix from camera to world, with the axes of OpenGL, and the numbers f_x, f_y, c_x and
+    /// c_y of the lens in pixels.
     Pose(Rows, Option<[f64; 4]>),
 }
 

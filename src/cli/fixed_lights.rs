@@ -1,8 +1,8 @@
 //! Views of a scene under lights that stay, for data sets.
 //!
-//! NeRF and Gaussian splatting explain all views by one light. The lights and the exposure of models
-//! are therefore those of the default view, and a spot that a camera holds stays where the camera
-//! of the scene is.
+//! NeRF and Gaussian splatting explain all views by one light. The lights and the exposure of
+//! models are therefore those of the default view, and a spot that a camera holds stays where the
+//! camera of the scene is.
 
 use marraztu_core::scene::{
     Aim as Place, Anchor, AnchorMut, Command, Item, Light, LightOrigin, Scene, SpotOwner, Tracked,

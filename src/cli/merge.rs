@@ -199,8 +199,8 @@ impl Merged {
         let (jobs, lines) = (self.jobs.unwrap_or(0), self.lines.len());
         if jobs > MOST_JOBS.saturating_mul(lines.max(1)) {
             return Err(format!(
-                "the reports state {jobs} pictures, but have {lines}: a summary is damaged, or most \
-                 reports are missing"
+                "the reports state {jobs} pictures, but have {lines}: a summary is damaged, or \
+                 most reports are missing"
             ));
         }
         Ok(())

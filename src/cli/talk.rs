@@ -18,8 +18,8 @@ pub(crate) struct Talk {
     /// Print errors only: no notes on files, no progress
     #[arg(short, long, conflicts_with = "progress")]
     quiet: bool,
-    /// Print progress as lines, even if standard error is not a terminal: per cent, or pictures, their
-    /// rate and the time left
+    /// Print progress as lines, even if standard error is not a terminal: per cent, or pictures,
+    /// their rate and the time left
     #[arg(long)]
     progress: bool,
 }

@@ -56,7 +56,8 @@ fn an_orbit_keeps_its_centre_at_the_same_pixel_and_distance() {
     }
 }
 
-/// A desk for each projection, with a centred lens and with one that is shifted and has wide pixels.
+/// A desk for each projection, with a centred lens and with one that is shifted and has wide
+/// pixels.
 fn desks() -> Vec<Desk> {
     let mut desks = Vec::new();
     for projection in [Projection::Perspective, Projection::Orthographic] {

@@ -267,10 +267,10 @@ fn a_model_is_exported_alone_and_a_scene_with_its_cameras_and_lights() {
     let rows: [(&[&str], bool, bool); 9] = [
         (&["a.obj"], false, false),
         (&["a.obj", "--content", "scene"], true, true),
-        (&["a.obj", "--lights", "0"], false, true),
+        (&["a.obj", "--lights", "1"], false, true),
         (&["a.obj", "--lights", "none"], false, false),
         (&["a.obj", "--from", "front"], true, false),
-        (&["a.obj", "--lights", "0", "--content", "models"], false, false),
+        (&["a.obj", "--lights", "1", "--content", "models"], false, false),
         (&["s.marraztu"], true, true),
         (&["s.marraztu", "a.obj"], true, true),
         (&["s.marraztu", "--content", "models"], false, false),

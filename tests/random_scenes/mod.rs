@@ -113,8 +113,8 @@ fn cameras(rng: &mut Rng, size: Size) -> List<CameraId, Camera> {
     all.into_iter().take(count).collect()
 }
 
-/// A lens shift by whole pixels, so faces stay on borders of pixels. It leaves the random numbers of
-/// everything else as they are.
+/// A lens shift by whole pixels, so faces stay on borders of pixels. It leaves the random numbers
+/// of everything else as they are.
 #[expect(clippy::cast_precision_loss, reason = "a small picture")]
 fn shift(rng: &Rng, size: Size) -> [f64; 2] {
     let mut rng = rng.clone();

@@ -287,7 +287,7 @@ impl Drawn {
 }
 
 impl Sample {
-    /// Sorts windows by their detail: the differences between the pictures, each of which is
+    /// Sorts windows by their detail, the differences between the pictures: each picture is
     /// inexact in its own places.
     fn new(
         pictures: &[Drawn],

@@ -21,8 +21,8 @@ const FIRST: usize = 3;
 /// The part of the sizes that all parts share: a part of size 0 may have figures, too.
 const SHARED: f64 = 0.2;
 
-/// Measuring ends once an interval is narrow, and so more often if a variance is underestimated by
-/// chance: intervals are wider by this factor. A test counts how often they hold.
+/// Measuring ends once an interval is narrow, and so more often if a variance is underestimated:
+/// intervals are wider by this factor. A test counts how often they hold.
 const WIDER: f64 = 1.6;
 
 /// Parts in strata, and the figures of the parts that were drawn.

@@ -395,7 +395,8 @@ impl App {
         }
     }
 
-    /// Measures the lesson on show once more, because the machine was too busy, a few times at most.
+    /// Measures the lesson on show once more, because the machine was too busy, a few times at
+    /// most.
     fn measure_lesson_again(&mut self, ctx: &Context) {
         if let Some(lesson) = self.state.lab.lesson
             && self.lab.tries < TRIES

@@ -409,7 +409,8 @@ mod tests {
         }
         assert!(from_json(br#"{"frames": []}"#).unwrap_err().starts_with("it has 0 frames"));
         let plain = format!(
-            r#"{{"camera_model": "OPENCV", "k1": 0, "distortion_params": [0, 0], "frames": [{{"transform_matrix": {whole}}}]}}"#
+            r#"{{"camera_model": "OPENCV", "k1": 0, "distortion_params": [0, 0],
+               "frames": [{{"transform_matrix": {whole}}}]}}"#
         );
         assert!(from_json(plain.as_bytes()).is_ok());
     }

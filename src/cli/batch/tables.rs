@@ -237,7 +237,7 @@ fn bop_entries(image: &DatasetImage, gap: &mut dyn FnMut(&DatasetObject) -> Stri
     #[expect(clippy::cast_precision_loss, reason = "fewer than 2^53 pixels")]
     let info = |object: &DatasetObject| {
         let DatasetObject { visible, alone, whole, .. } = object;
-        // An object that nobody sees has no box: calc_gt_info.py of bop_toolkit.
+        // An invisible object has no box: calc_gt_info.py of bop_toolkit.
         let bounds = if visible.count > 0 { whole.bounds } else { visible.bounds };
         json!({
             "bbox_obj": bounds,

@@ -152,7 +152,7 @@ impl Site {
     fn is_as_deep(&self, place: &Bounds) -> bool {
         let part = self.sight.depth(place.centre()) / self.sight.depth(self.focus);
         match self.sight.projection {
-            Projection::Perspective => (0.8..=1.25).contains(&part),
+            Projection::Perspective => (0.6..=1.6).contains(&part),
             Projection::Orthographic => true,
         }
     }
