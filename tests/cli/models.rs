@@ -118,8 +118,9 @@ fn a_picture_that_shows_nothing_of_an_object_says_why() {
     let err = notes(path, &["square.obj", "square.obj", "--from", "180,0", "--sides", "one"]);
     assert!(err.contains("and 1 other object is visible:"), "{err}");
 
-    std::fs::write(path.join("clear.mtl"), "newmtl clear\nKd 1 1 1\nd 0\nnewmtl solid\nKd 1 1 1\n")
-        .unwrap();
+    // In files of other programs, a material that hides the whole model is taken as opaque.
+    let mtl = "# exported by Marraztu\nnewmtl clear\nKd 1 1 1\nd 0\n";
+    std::fs::write(path.join("clear.mtl"), mtl).unwrap();
     let clear = format!("mtllib clear.mtl\n{}", SQUARE.replace("f 1", "usemtl clear\nf 1"));
     std::fs::write(path.join("clear.obj"), clear).unwrap();
     let err = notes(path, &["clear.obj"]);

@@ -82,7 +82,6 @@ fn stl_files_are_flat_and_a_chosen_crease_angle_smooths_them() {
         assert_eq!(normals(&folder, name), 8, "{name}");
     }
     assert!(folder.info("hex.stl").contains("crease 0 degrees"));
-    // An angle of 40 degrees is flat in STL files, and smooth in OBJ files.
     let round = folder.drawn(&["hex.stl", "--crease", "80"]);
     assert!(round != folder.drawn(&["hex.stl"]));
 }

@@ -209,7 +209,7 @@ fn up_axis(objects: &[&Object]) -> UpAxis {
 
 /// Returns the numbers in the file of a position or direction of the world.
 fn axes<T: Copy + Neg<Output = T>>(up: UpAxis, [x, y, z]: [T; 3]) -> [T; 3] {
-    // UpAxis::Z turns (x, y, z) of the file to (x, z, -y).
+    // The inverse of UpAxis::upright, which turns (x, y, z) of the file to (x, z, -y).
     if up == UpAxis::Z { [x, -z, y] } else { [x, y, z] }
 }
 

@@ -417,8 +417,8 @@ impl Statements {
         }
     }
 
-    /// Removes an opacity map that is the picture of the texture, if that has no alpha. Its alpha
-    /// is meant, not the brightness of its colours.
+    /// Removes an opacity map with the picture of the texture, if that has no alpha. Its alpha is
+    /// meant, not the brightness of its colours.
     fn settle_opacity(
         &self,
         texture: Option<&Texture>,
@@ -557,8 +557,7 @@ mod tests {
         }
     }
 
-    /// The colours Kd and Ks of materials after bytes are scaled, and the number of those
-    /// materials.
+    /// Kd and Ks of all materials after bytes are scaled, and the number of materials with bytes.
     fn scaled(text: &str) -> (Vec<[f64; 3]>, usize) {
         let mut findings = Findings::new("a.mtl");
         let mut materials = read_statements(text.as_bytes(), &mut findings);

@@ -81,7 +81,7 @@ struct Reader<'a> {
 /// A facet in progress.
 #[derive(Default)]
 struct Facet {
-    /// The number of its corners; the first three are kept.
+    /// The number of its corners. The first three are kept.
     count: usize,
     corners: [[f32; 3]; 3],
 }

@@ -10,8 +10,8 @@
 //!   |S| >= k - 1 + cos(c / 2)
 //!
 //! holds only if no n_i is farther from S than half of c, the largest angle of a smooth edge, and
-//! so no two are farther apart than c. The faces must also be connected. At all other vertices,
-//! faces are joined edge by edge, in time k log k.
+//! no two are farther apart than c. The faces must also be connected. At all other vertices, faces
+//! are joined edge by edge, in time k log k.
 
 use glam::DVec3;
 use rayon::prelude::*;
