@@ -428,7 +428,7 @@ fn by_definition(mesh: &Mesh, crease: f64) -> Vec<Vec<DVec3>> {
         let (Some(m), Some(n)) = (normals[a], normals[b]) else { return false };
         let angle = 2.0 * libm::atan2((m - n).length(), (m + n).length()).to_degrees();
         let ends = beside(b, vertex);
-        angle <= (0.99 * crease).max(1e-4) && beside(a, vertex).iter().any(|end| ends.contains(end))
+        angle <= (crease - 0.25).max(1e-4) && beside(a, vertex).iter().any(|end| ends.contains(end))
     };
     let of_corner = |polygon: usize, vertex: u32| {
         let mut fan = vec![polygon];

@@ -24,9 +24,9 @@ use crate::scene::mesh::outlines::Outlines;
 use crate::scene::mesh::sets::Sets;
 use crate::scene::{Crease, NONE, Point, dvec3};
 
-/// Edges are sharp from this share of the crease angle on. The 60 degrees of a hexagonal bar with
-/// three decimals are exact to 0.2 only, and all of its edges have to look alike.
-const SHARP_FROM: f64 = 0.99;
+/// Edges are sharp from this many degrees below the crease angle on. The 60 degrees of a hexagonal
+/// bar with three decimals are exact to 0.2 only, and all of its edges have to look alike.
+const TOLERANCE: f64 = 0.25;
 
 /// The largest angle in degrees between faces that count as one plane: numbers in files have about
 /// six digits.
@@ -62,7 +62,7 @@ pub(crate) struct Limit {
 impl Limit {
     pub(crate) fn new(crease: Crease) -> Self {
         let half = |degrees: f64| degrees.to_radians() / 2.0;
-        let largest = (SHARP_FROM * crease.get()).max(PLANE);
+        let largest = (crease.get() - TOLERANCE).max(PLANE);
         let (sin, cos) = libm::sincos(half(largest));
         // The quick check leaves room for rounding.
         let slack = 1.0 - libm::cos(half(largest - PLANE / 2.0));
