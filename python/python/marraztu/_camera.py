@@ -20,7 +20,7 @@ class Camera:
     principal point, or by `yfov`, the vertical angle of view in radians, for square pixels and the
     centre of the picture. In `K`, the upper left corner of the picture is (0, 0), so the centre of
     the first pixel is (0.5, 0.5), as in COLMAP; for a `K` that puts it at (0, 0), as OpenCV and BOP
-    do, give `pixel_center=0`. Lenses that distort have no `K` alone: undistort their pictures first.
+    do, give `pixel_center=0`. Lenses that distort have no `K`: undistort their pictures first.
 
     `pose` is a 4x4 matrix from camera to world. With `convention="opengl"`, x points to the right,
     y up, and the camera looks along -z (glTF, NeRF, pyrender, Blender). With `"opencv"`, y points
@@ -151,7 +151,9 @@ def _intrinsics(K: NDArray[np.float64], pixel_center: float) -> NDArray[np.float
         raise ValueError("K has rows (fx, 0, cx), (0, fy, cy), (0, 0, 1)")
     # Across the picture, a skew of less than this is below a thousandth of a pixel.
     if abs(skew) > 1e-3 * fy / max(abs(cx), abs(cy), 1):
-        raise ValueError(f"K has a skew of {skew:g}; only rows and columns at right angles are drawn")
+        raise ValueError(
+            f"K has a skew of {skew:g}; only rows and columns at right angles are drawn"
+        )
     K = K.copy()
     K[0, 1] = 0
     K[:2, 2] += 0.5 - pixel_center
