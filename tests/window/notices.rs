@@ -7,7 +7,7 @@ use std::path::Path;
 
 use egui::Key;
 use egui::accesskit::Role;
-use egui_kittest::kittest::Queryable as _;
+use egui_kittest::kittest::{By, Queryable as _};
 use marraztu::app::actions::Action;
 use marraztu::app::actions::Chord::{Command, Named};
 use marraztu::app::actions::Request;
@@ -143,7 +143,8 @@ fn the_up_axis_is_switched_in_the_notice_as_one_step_and_for_others_only_on_requ
         if asks {
             click(&mut editor, Role::Button, "Z up");
             editor.wait_until(|editor| editor.up() == UpAxis::Z);
-            click(&mut editor, Role::Button, "Use for all from now on");
+            // The properties offer it, too.
+            editor.click_label("Use for all from now on");
             assert!(!editor.shows("Use for all from now on"), "it is the default now");
         }
         editor.perform(Action::New);
@@ -254,7 +255,8 @@ fn a_scene_with_many_objects_out_of_view_opens_with_one_notice_that_counts_only_
     // What the picture shows decides.
     let unseen = editor.state().notices.len();
     let shown = seen(&editor);
-    assert_eq!(unseen + shown, 60);
+    let texts: Vec<_> = editor.state().notices.iter().map(|notice| &notice.text).collect();
+    assert_eq!(unseen + shown, 60, "{shown} are seen: {texts:?}");
     assert!(shown > 2, "{shown} are seen");
     assert!(editor.shows(&format!("{unseen} objects are")), "one notice");
     let buttons = editor.harness.query_all_by_label("Frame all").count();
@@ -279,8 +281,11 @@ fn notices_cover_neither_the_dial_nor_the_axes_and_stay_in_the_picture() {
         let picture = editor.picture();
         let dial = editor.harness.query_all_by_label_contains("Accuracy").next();
         let dial = dial.map(|dial| dial.rect());
-        for place in places {
-            let rect = control(&editor, Role::Button, place).rect();
+        let buttons = places.into_iter().flat_map(|place| {
+            let all = editor.harness.query_all(By::new().role(Role::Button).label(place));
+            all.map(move |button| (place, button.rect()))
+        });
+        for (place, rect) in buttons.collect::<Vec<_>>() {
             assert!(picture.contains_rect(rect), "{place} at {rect} in {size:?}");
             let axes = egui::Rect::from_min_max(
                 picture.right_top() - egui::vec2(92.0, 0.0),

@@ -251,6 +251,9 @@ impl App {
         // errors itself.
         let answer = if self.state.picture_only { None } else { self.dialogs.ui(&ctx) };
         let pressed = Keyboard::take(&ctx);
+        if Keyboard::take_escaped(&ctx) {
+            self.quits_until = None;
+        }
 
         // Requests are answered last, so everything in a frame shows the same scene.
         if !requests.is_empty() || !pressed.is_empty() || answer.is_some() {

@@ -46,6 +46,8 @@ pub(crate) struct Keyboard {
     /// Whether the last key event was a repetition by a held key; its text event follows.
     last_was_repeat: bool,
     presses: u64,
+    /// Whether an Esc was pressed for something else than the viewport.
+    escaped: bool,
     waiting: Vec<Press>,
     keymap: Arc<Keymap>,
     pasted: Option<String>,
@@ -68,6 +70,11 @@ impl Keyboard {
         (keyboard.viewport, keyboard.letters) = (Some(viewport), letters);
         drop(keyboard);
         regions::go_further(ctx, viewport);
+    }
+
+    /// Returns whether an Esc has closed a dialog, a menu or a field since the last call.
+    pub(crate) fn take_escaped(ctx: &Context) -> bool {
+        std::mem::take(&mut ctx.plugin_or_default::<Self>().lock().escaped)
     }
 
     /// Lets the next keys form an amount, even those that arrive before the next frame.
@@ -143,6 +150,7 @@ impl Keyboard {
     /// Handles a key press. Returns whether the viewport keeps the key from egui.
     fn key(&mut self, owner: Owner, key: Key, modifiers: Modifiers, repeat: bool) -> bool {
         self.last_was_repeat = repeat;
+        self.escaped |= key == Key::Escape && owner != Owner::Viewport;
         // Typed amounts use Enter and Backspace, which trigger no action then.
         let types = self.letters == Letters::Type && owner == Owner::Viewport;
         if types && matches!(key, Key::Enter | Key::Backspace) {

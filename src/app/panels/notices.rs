@@ -26,6 +26,12 @@ const SHOWN: f64 = 8.0;
 /// The greatest width of a notice.
 const WIDTH: f32 = 340.0;
 
+/// The least width of a notice.
+const LEAST: f32 = 180.0;
+
+/// The share of the width of the picture that notices may cover.
+const SHARE: f32 = 0.42;
+
 /// The height of the text at the lower edge of the picture, below the notices.
 const PLATE: f32 = 36.0;
 
@@ -53,7 +59,8 @@ pub(crate) fn show<T>(
     if is_empty && dismissible == 0 {
         return;
     }
-    let width = WIDTH.min(picture.width() - 32.0).max(160.0);
+    // The middle of the picture stays free.
+    let width = (SHARE * picture.width() - 20.0).clamp(LEAST, WIDTH);
     let place = place(ctx, picture, width, state);
     let corner = Area::new(Id::unique("notices"))
         .order(Order::Middle)
