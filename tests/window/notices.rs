@@ -13,6 +13,7 @@ use marraztu::app::actions::Chord::{Command, Named};
 use marraztu::app::actions::Request;
 use marraztu::app::state::Notice;
 use marraztu_core::accuracy::Shot;
+use marraztu_core::base::image::Size;
 use marraztu_core::scene::{ItemId, UpAxis};
 use marraztu_render::{Renderer, plan_frame};
 
@@ -218,7 +219,10 @@ fn a_notice_about_an_object_out_of_view_goes_once_the_view_shows_it() {
 /// Counts the objects with a pixel in the picture.
 fn seen(editor: &Editor) -> usize {
     let state = editor.state();
-    let size = state.statistics.size;
+    // The last picture may be smaller, since the scene was moving.
+    let side = editor.picture().size();
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "few pixels")]
+    let size = Size::new(side.x as usize, side.y as usize);
     let shot = Shot::new(&state.scene, &state.view, &state.settings, size);
     let mut renderer = Renderer::default();
     renderer.render(&plan_frame(&shot));
