@@ -61,7 +61,7 @@ pub(super) fn export(arguments: &Export) -> Result<(), Failure> {
         // Options about them ask for them.
         true => ExportOptions {
             cameras: seeing.camera.is_some() || seeing.from.is_some(),
-            lights: seeing.lights.is_some(),
+            lights: seeing.lights.as_ref().is_some_and(|slots| !slots.0.is_empty()),
         },
     });
     let sources = stage.sources(files);

@@ -238,13 +238,14 @@ fn a_matte_side_has_one_colour_in_all_views_of_a_data_set() {
     };
     for model in ["cube.obj", "lamp.marraztu"] {
         let (fixed, notes) = range(model, &[]);
-        assert!(fixed <= 2, "{model}: {fixed}");
+        // The light of a lamp differs a little between the pixels of a side.
+        assert!(fixed <= 5, "{model}: {fixed}");
         assert!(notes.contains("the lights are the same in all views"), "{notes}");
         let (following, notes) = range(model, &["--lights-follow-camera"]);
         assert!(following > 20, "{model}: {following}");
         assert!(!notes.contains("the lights are"), "{notes}");
         // The exposure stays, too.
-        assert!(range(model, &["--exposure", "fit"]).0 <= 2, "{model}");
+        assert!(range(model, &["--exposure", "fit"]).0 <= 5, "{model}");
     }
 }
 

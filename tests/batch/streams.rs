@@ -72,7 +72,8 @@ fn a_part_of_a_million_pictures_is_planned_without_the_others() {
 #[test]
 fn a_data_set_does_not_mix_with_the_pictures_of_an_earlier_one() {
     let folder = folder();
-    let draw = ["batch", "models/cam.obj", "models/wheel.obj", "--size", "16", "--samples", "1"];
+    let models = ["batch", "models/cam.obj", "models/wheel.obj"];
+    let draw = [&models[..], &["--size", "16", "--samples", "1", "--depth-scale", "100"]].concat();
     for (kind, stale) in [
         ("nerf", "set/cam/color/00002.png"),
         ("bop", "set/000000/depth/000002.png"),
@@ -103,7 +104,8 @@ fn a_data_set_does_not_mix_with_the_pictures_of_an_earlier_one() {
 #[test]
 fn a_picture_of_a_data_set_that_fails_leaves_no_earlier_one_and_no_camera() {
     let folder = folder();
-    let draw = ["batch", "models/cam.obj", "models/wheel.obj", "--size", "16", "--samples", "1"];
+    let models = ["batch", "models/cam.obj", "models/wheel.obj"];
+    let draw = [&models[..], &["--size", "16", "--samples", "1", "--depth-scale", "100"]].concat();
     let nerf = [&draw[..], &["--dataset", "nerf", "--out", "set", "--views", "2"]].concat();
     ends_with(0, folder.path(), &nerf);
     let coco = [&draw[..], &["--dataset", "coco", "--out", "coco", "--views", "2"]].concat();
@@ -123,10 +125,16 @@ fn objects_that_have_left_a_scene_leave_no_masks() {
     let folder = folder();
     let at = |name: &str| folder.path().join(name);
     let save = |models: &[&str]| {
-        let export = [&["export"][..], models, &["--out", "a.marraztu"]].concat();
-        ends_with(0, folder.path(), &export);
+        let object = |(id, path): (usize, &&str)| {
+            format!("(id: {id}, name: \"{path}\", model: File(path: \"{path}\")),")
+        };
+        let objects: String = models.iter().enumerate().map(object).collect();
+        let camera = "(id: 9, name: \"c\", eye: (0.0, 0.0, 300.0))";
+        let scene = format!("(version: 1, objects: [{objects}], cameras: [{camera}])");
+        std::fs::write(at("a.marraztu"), scene).unwrap();
     };
     let bop = ["batch", "a.marraztu", "--size", "16", "--samples", "1", "--dataset", "bop"];
+    let bop = [&bop[..], &["--depth-scale", "100"]].concat();
     let bop = [&bop[..], &["--out", "set"]].concat();
     save(&["models/cam.obj", "models/wheel.obj"]);
     ends_with(0, folder.path(), &bop);

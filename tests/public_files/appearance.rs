@@ -195,6 +195,15 @@ fn a_texture_replaces_vertex_colours() {
     folder.ends(0, &["export", "dark.obj", "--out", "b.obj"]);
     assert!(folder.drawn(&["b.obj"]) == plain);
     assert!(folder.info("b.obj").contains("vertex colours  yes"));
+    // Grey ones are baked light.
+    std::fs::write(folder.at("baked.obj"), colored("0.4 0.4 0.4")).unwrap();
+    let baked = folder.drawn(&["baked.obj"]);
+    let sum = |picture: &Picture| -> u32 {
+        picture.pixels().iter().map(|[r, g, ..]| u32::from(*r) + u32::from(*g)).sum()
+    };
+    assert!(sum(&baked) < sum(&plain));
+    assert!(!folder.info("baked.obj").contains("replaces"));
+    assert!(attributes("baked.obj"));
 }
 
 #[test]

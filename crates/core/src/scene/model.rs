@@ -26,12 +26,17 @@ pub struct Model {
     pub materials: Vec<FileMaterial>,
     /// The colour of edges, from the file's line `c r g b` or `# color r g b`.
     pub edge_color: Option<Color>,
+    /// Whether all vertex colours are grey: they are baked light, such as ambient occlusion, and
+    /// multiply textures, which replace the colours of a scan.
+    pub baked_light: bool,
 }
 
 impl Model {
     /// Creates a model of this shape that comes from no file.
     pub fn of_mesh(name: &str, mesh: Mesh) -> Self {
+        let is_grey = |color: &[f32; 3]| color[0] == color[1] && color[1] == color[2];
         Self {
+            baked_light: mesh.colors().iter().all(is_grey),
             name: name.to_owned(),
             source: None,
             companions: Vec::new(),
@@ -59,6 +64,7 @@ impl Model {
     #[must_use]
     pub fn with_crease(&self, crease: Crease) -> Self {
         Self {
+            baked_light: self.baked_light,
             name: self.name.clone(),
             source: self.source.clone(),
             companions: self.companions.clone(),

@@ -245,8 +245,8 @@ impl Object {
             material,
             opacity: opacity * self.opacity,
             unlit: of_file && file.is_some_and(|file| file.unlit),
-            multiplies_colors: self.texture.is_none()
-                && file.is_none_or(|file| file.multiplies_colors),
+            multiplies_colors: self.model.baked_light
+                || (self.texture.is_none() && file.is_none_or(|file| file.multiplies_colors)),
             texture: texture.filter(|_| self.surface != Surface::Material),
             maps: file.map(|file| &file.maps).filter(|_| self.surface != Surface::Material),
             of_file,

@@ -190,10 +190,12 @@ fn model(
         findings.note_all(FindingKind::VertexUnused, mesh.unused_vertices().len(), None);
     }
     note_unmapped(&mesh, &materials, &mut findings);
-    note_replaced_colors(&mesh, &materials, &mut findings);
     progress.reached(1, 1)?;
 
     let model = Model::of_mesh(&model_name(file), mesh);
+    if !model.baked_light {
+        note_replaced_colors(&model.mesh, &materials, &mut findings);
+    }
     let model = Model { companions, options: *options, materials, edge_color, ..model };
     let findings = findings.into_list().into_iter().chain(of_materials).collect();
     Ok(Loaded { model, findings: joined(findings) })
@@ -476,9 +478,12 @@ fn note_replaced_colors(mesh: &Mesh, materials: &[FileMaterial], findings: &mut 
     if mesh.colors().is_empty() {
         return;
     }
-    let texture = |material: u32| materials.get(material as usize)?.texture.as_ref();
+    let is_replaced = |material: &u32| {
+        let material = materials.get(*material as usize);
+        material.is_some_and(|it| it.texture.is_some())
+    };
     let of_part: Vec<Option<u32>> =
-        mesh.parts().iter().map(|part| part.material.filter(|it| texture(*it).is_some())).collect();
+        mesh.parts().iter().map(|part| part.material.filter(is_replaced)).collect();
     let mut replaced = BTreeSet::new();
     for (polygon, part) in (0..).zip(mesh.polygon_parts()) {
         let Some(material) = of_part[*part as usize] else { continue };
