@@ -55,6 +55,25 @@ fn a_batch_of_more_pictures_takes_no_more_memory_with_reports_layers_and_data_se
 
 #[cfg(target_os = "linux")]
 #[test]
+fn a_batch_of_more_models_takes_no_more_memory() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let model = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    for i in 0..1500 {
+        std::fs::write(at(&format!("models/{i}.obj")), model).unwrap();
+    }
+    let measured = |count: usize| {
+        let names: String = (0..count).map(|i| format!("models/{i}.obj\n")).collect();
+        std::fs::write(at("list.txt"), names).unwrap();
+        let draw = ["batch", "--list", "list.txt", "--size", "8", "--samples", "1"];
+        memory(folder.path(), &[&draw[..], &["--out", "out/{stem}.png"]].concat()).0
+    };
+    let (few, many) = (measured(100), measured(1500));
+    assert!(many < few + 6_000, "{few} KiB for 100 models, {many} for 1500");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
 fn a_part_of_a_million_pictures_is_planned_without_the_others() {
     let folder = folder();
     let names = (0..20_000).map(|i| format!("models/{}/{i}.obj\n", i % 100));
@@ -72,8 +91,8 @@ fn a_part_of_a_million_pictures_is_planned_without_the_others() {
 #[test]
 fn a_data_set_does_not_mix_with_the_pictures_of_an_earlier_one() {
     let folder = folder();
-    let models = ["batch", "models/cam.obj", "models/wheel.obj"];
-    let draw = [&models[..], &["--size", "16", "--samples", "1", "--depth-scale", "100"]].concat();
+    let draw = ["batch", "models/cam.obj", "models/wheel.obj", "--size", "16", "--samples", "1"];
+    let draw = [&draw[..], &["--depth-scale", "100"]].concat();
     for (kind, stale) in [
         ("nerf", "set/cam/color/00002.png"),
         ("bop", "set/000000/depth/000002.png"),
@@ -104,8 +123,8 @@ fn a_data_set_does_not_mix_with_the_pictures_of_an_earlier_one() {
 #[test]
 fn a_picture_of_a_data_set_that_fails_leaves_no_earlier_one_and_no_camera() {
     let folder = folder();
-    let models = ["batch", "models/cam.obj", "models/wheel.obj"];
-    let draw = [&models[..], &["--size", "16", "--samples", "1", "--depth-scale", "100"]].concat();
+    let draw = ["batch", "models/cam.obj", "models/wheel.obj", "--size", "16", "--samples", "1"];
+    let draw = [&draw[..], &["--depth-scale", "100"]].concat();
     let nerf = [&draw[..], &["--dataset", "nerf", "--out", "set", "--views", "2"]].concat();
     ends_with(0, folder.path(), &nerf);
     let coco = [&draw[..], &["--dataset", "coco", "--out", "coco", "--views", "2"]].concat();
@@ -125,17 +144,20 @@ fn objects_that_have_left_a_scene_leave_no_masks() {
     let folder = folder();
     let at = |name: &str| folder.path().join(name);
     let save = |models: &[&str]| {
-        let object = |(id, path): (usize, &&str)| {
-            format!("(id: {id}, name: \"{path}\", model: File(path: \"{path}\")),")
+        let object = |(id, model): (usize, &&str)| {
+            format!("(id: {id}, name: \"{id}\", model: File(path: \"{model}\")),")
         };
-        let objects: String = models.iter().enumerate().map(object).collect();
-        let camera = "(id: 9, name: \"c\", eye: (0.0, 0.0, 300.0))";
-        let scene = format!("(version: 1, objects: [{objects}], cameras: [{camera}])");
+        let objects: String = (3..).zip(models).map(object).collect();
+        let scene = format!(
+            "(version: 1, next_id: 9, objects: [{objects}],
+              cameras: [(id: 1, name: \"c\", eye: (0.0, 0.0, 500.0))],
+              lights: [(id: 2, name: \"ambient\", slot: 0, kind: Ambient)],
+              view: (object: Some(3), camera: 1, light: Some(2), subject: Object, marks: false))"
+        );
         std::fs::write(at("a.marraztu"), scene).unwrap();
     };
     let bop = ["batch", "a.marraztu", "--size", "16", "--samples", "1", "--dataset", "bop"];
-    let bop = [&bop[..], &["--depth-scale", "100"]].concat();
-    let bop = [&bop[..], &["--out", "set"]].concat();
+    let bop = [&bop[..], &["--depth-scale", "10", "--out", "set"]].concat();
     save(&["models/cam.obj", "models/wheel.obj"]);
     ends_with(0, folder.path(), &bop);
     assert!(at("set/000000/mask/000000_000001.png").exists());

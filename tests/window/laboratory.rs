@@ -141,14 +141,14 @@ fn a_measurement_is_chosen_from_by_its_marks_its_rows_and_its_budgets() {
             // Marks may overlap.
             control(&editor, Role::RadioButton, &name).click_accesskit();
             editor.settle();
-            assert_eq!(editor.state().settings, point.settings, "{name}");
+            assert_eq!(editor.state().settings, mark.chosen, "{name}");
         }
     }
     let flat = control(&editor, Role::RadioButton, "Shading, --shading: Flat");
     flat.click_accesskit();
     editor.settle();
     assert_eq!(editor.state().settings.light, LightAt::Face);
-    click(&mut editor, Role::RadioButton, "presets: Default");
+    click(&mut editor, Role::RadioButton, "presets: Default, 1 sample");
     assert_eq!(editor.state().settings, Settings::default());
     assert_eq!(editor.steps(), 0, "accuracy is no step");
     // A change of the scene makes the measurement stale.
@@ -399,6 +399,9 @@ fn a_lesson_measures_its_axis_by_itself_and_tells_the_cost() {
     editor.ask(Request::Lab(LabRequest::Back));
     editor.ask(Request::Lab(LabRequest::ShowLesson("rounding")));
     assert!(lab(&editor).running.is_none() && editor.shows(&first));
+    // On request it is.
+    click(&mut editor, Role::Button, "Measure again");
+    assert!(lab(&editor).running.is_some());
 }
 
 #[test]

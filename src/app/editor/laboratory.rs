@@ -26,7 +26,7 @@ use marraztu_lab::pairs::{Touch, Unmeasured, Watch};
 use marraztu_lab::picture_source::{PictureSource as _, Reference, Studio};
 use marraztu_lab::report::Report;
 use marraztu_lab::suite::{self, SUITE, SuiteDetail, SuiteScene};
-use marraztu_lab::sweep::{Findings, Question, Verdict, sweep};
+use marraztu_lab::sweep::{Findings, Question, sweep};
 use marraztu_lab::timing::WallClock;
 
 /// The background work of the laboratory.
@@ -46,8 +46,6 @@ pub(crate) struct Work {
     /// The axis of a new lesson, and the size of the picture in the last frame: the axis is
     /// measured once the lesson's card has given the picture its final size.
     lesson: Option<(&'static Axis, Option<Size>)>,
-    /// The times that the lesson was measured again, because the machine was too busy.
-    tries: u8,
     /// The command that repeats the measurement.
     command: String,
     /// When the window was last drawn.
@@ -65,9 +63,6 @@ const REST: Duration = Duration::from_millis(250);
 
 /// The time after a press in which the window is not made to wait.
 const USED: Duration = Duration::from_secs(1);
-
-/// The times that a lesson is measured again on a busy machine.
-const TRIES: u8 = 2;
 
 /// The number of pairs between two drawings of the window.
 const PAIRS_BETWEEN: u32 = 3;
@@ -358,13 +353,7 @@ impl App {
         }
         match outcome {
             Outcome::Running => return ctx.request_repaint_after(self.lab.rest_now()),
-            Outcome::Done(Ok(findings)) => {
-                let is_busy = findings.points.iter().any(|it| it.verdict == Verdict::Busy);
-                self.show_findings(findings);
-                if is_busy {
-                    self.measure_lesson_again(ctx);
-                }
-            }
+            Outcome::Done(Ok(findings)) => self.show_findings(findings),
             Outcome::Done(Err(Unmeasured::Cancelled)) => {
                 self.state.tell(Some("Measuring was cancelled".to_owned()));
                 self.state.lab.is_rough = self.state.lab.report.is_some();
@@ -392,18 +381,6 @@ impl App {
                 ctx.request_repaint();
             }
             None => {}
-        }
-    }
-
-    /// Measures the lesson on show once more, because the machine was too busy, a few times at
-    /// most.
-    fn measure_lesson_again(&mut self, ctx: &Context) {
-        if let Some(lesson) = self.state.lab.lesson
-            && self.lab.tries < TRIES
-        {
-            self.lab.tries += 1;
-            self.lab.lesson = Some((lesson.axis(), None));
-            ctx.request_repaint();
         }
     }
 
@@ -472,7 +449,6 @@ impl App {
                 if !own.lab.away {
                     self.waiting_scene = Some(Box::new(own));
                 }
-                self.lab.tries = 0;
                 if !self.state.lab.costs.contains_key(axis.key) {
                     self.lab.lesson = Some((axis, None));
                 }

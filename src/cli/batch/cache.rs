@@ -97,6 +97,11 @@ impl StageCache {
         loaded
     }
 
+    /// Drops the scenes of a file. Another request loads it again.
+    pub(super) fn forget(&self, done: &Path) {
+        self.entries.lock().unwrap_or_else(PoisonError::into_inner).forget(done);
+    }
+
     /// Returns whether `count` models like this file fit within the limit.
     pub(super) fn has_room_for(&self, file: &Path, count: usize) -> bool {
         // A loaded model takes about this many times the bytes of its file.
@@ -116,6 +121,15 @@ impl Entries {
         entry.used = self.clock;
         self.order.insert(self.clock, key.clone());
         Arc::clone(&entry.loaded)
+    }
+
+    /// Drops the scenes of a file.
+    fn forget(&mut self, done: &Path) {
+        let gone: Vec<Key> = self.map.keys().filter(|(file, _)| file == done).cloned().collect();
+        for entry in gone.iter().filter_map(|key| self.map.remove(key)) {
+            self.order.remove(&entry.used);
+            self.bytes -= entry.bytes;
+        }
     }
 
     /// Notes the size of a new model, and drops others above the limit of `most` bytes. Models that
@@ -211,6 +225,15 @@ mod tests {
             assert_eq!(entries.map.len(), kept, "limit {most}");
             assert_eq!(entries.order.len(), kept, "limit {most}");
             assert_eq!(entries.bytes, entries.map.values().map(|entry| entry.bytes).sum());
+        }
+        // Models that are done take no memory.
+        let cache = StageCache::new(usize::MAX);
+        for job in &jobs {
+            let loaded = cache.get(&job.row, &Progress::new(), &AtomicBool::new(false));
+            assert!(loaded.is_ok());
+            cache.forget(&job.row.file);
+            let entries = cache.entries.lock().unwrap();
+            assert_eq!((entries.map.len(), entries.order.len(), entries.bytes), (0, 0, 0));
         }
         // A model is read once: the second request does not see that the file is gone.
         let cache = StageCache::new(usize::MAX);

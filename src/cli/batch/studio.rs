@@ -141,6 +141,10 @@ impl Studio {
                 Err(Fault::Program(panic))
             });
             let Attempt { source, spent, .. } = attempt;
+            // All pictures of a model follow each other, so no other one needs it.
+            if self.plan.end_of_model(number) == number + 1 {
+                self.cache.forget(&job.row.file);
+            }
             if result.as_ref().is_err_and(|fault| *fault != Fault::Cancelled) {
                 self.remove_earlier(&job);
             }

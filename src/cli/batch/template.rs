@@ -276,7 +276,8 @@ mod tests {
             ("out/{stem}-{index}.png", true),
             ("{stem}{index}.png", false),
             ("{index}{view}.png", false),
-            ("{index}1.png", false),
+            ("{index}1.png", true),
+            ("{stem}1{index}.png", false),
             ("{stem}-{index}-{view}.png", false),
             ("{stem}-{view:03}.png", false),
         ] {

@@ -212,7 +212,6 @@ mod tests {
     use marraztu_core::accuracy::Settings;
     use marraztu_core::edit::items;
 
-    use super::*;
     use crate::keeping::{Abandoned, Journal, OwnFolders, Unsaved};
     use crate::progress::Progress;
     use crate::window_state::WindowState;
