@@ -357,6 +357,7 @@ fn every_page_of_figures_names_the_commit_that_was_measured() {
 
 /// Archives and shallow clones have no history to look at, except that a release needs it.
 #[test]
+#[expect(clippy::print_stderr, reason = "who runs the tests has to see what is left out")]
 fn figures_come_from_ancestors_of_this_commit_and_those_of_a_release_are_fresh() {
     // A copy of the sources within another repository is not of that repository's commit.
     let is_own = root().join(".git").exists();

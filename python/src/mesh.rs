@@ -223,15 +223,8 @@ impl Copied {
             undrawn: BTreeMap::new(),
             undrawn_maps: Vec::new(),
         };
-        Ok(Model {
-            name,
-            source: None,
-            companions: Vec::new(),
-            options: LoadOptions { crease, ..LoadOptions::default() },
-            mesh,
-            materials: vec![material],
-            edge_color: None,
-        })
+        let options = LoadOptions { crease, ..LoadOptions::default() };
+        Ok(Model { options, materials: vec![material], ..Model::of_mesh(&name, mesh) })
     }
 }
 

@@ -357,10 +357,10 @@ mod tests {
         for (lines, jobs, is_right) in [
             (&[][..], 1000, true),
             (&[], 1001, false),
-            (&[done.clone()], 1000, true),
-            (&[done.clone()], 2_000_000, false),
-            (&[done.clone()], usize::MAX, false),
-            (&[zero, done], 2000, true),
+            (std::slice::from_ref(&done), 1000, true),
+            (std::slice::from_ref(&done), 2_000_000, false),
+            (std::slice::from_ref(&done), usize::MAX, false),
+            (&[zero, done.clone()], 2000, true),
         ] {
             let report = [lines, &[summary_of(jobs)]].concat();
             let checked = merged(&[&report]).unwrap().check();

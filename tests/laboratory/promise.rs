@@ -202,7 +202,6 @@ fn the_own_settings_of_an_example_are_as_near_to_the_ideal_as_the_default() {
                 };
                 let [own, default] = [own, Settings::default().modelled_as(&own)].map(&mut rmse);
                 let title = example.title;
-                eprintln!("{title}, {size:?}, {samples:?}: {own}, by default {default}");
                 assert!(own <= 1.02 * default, "{title}, {size:?}, {samples:?}: {own} > {default}");
             }
         }

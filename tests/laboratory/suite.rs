@@ -61,7 +61,6 @@ fn every_axis_shows_its_errors_on_its_scenes_and_no_coarse_choice_is_exact_there
             let errors: Vec<(&str, f64)> = own
                 .map(|it| (it.word, studio.rendering(&it.of(&base)).error(&exact).whole.rmse))
                 .collect();
-            eprintln!("{} {}: {errors:?}", suite.word, axis.key);
             let of_time = suite.time_only.iter().any(|(key, _)| *key == axis.key);
             let own = mute(axis, of_time, &errors).into_iter();
             faults.extend(own.map(|fault| format!("{} on {}: {fault}", axis.key, suite.word)));

@@ -61,6 +61,7 @@ fn hexagon() -> (Vec<[[f32; 3]; 3]>, String) {
 }
 
 /// The number of different normals, to three decimals, in an export.
+#[expect(clippy::cast_possible_truncation, reason = "parts of a unit vector")]
 fn normals(folder: &Folder, name: &str) -> usize {
     folder.ends(0, &["export", name, "--out", "normals.obj"]);
     let text = String::from_utf8(folder.read("normals.obj")).unwrap();

@@ -16,7 +16,8 @@ impl Painted {
     /// Returns the finished fraction; `None` before the first tile.
     pub(crate) fn fraction(&self) -> Option<f64> {
         let both = self.0.load(Ordering::Relaxed);
-        let (done, all) = ((both >> 32) as u32, both as u32 & u32::MAX);
+        let half = |bits: u64| u32::try_from(bits & u64::from(u32::MAX)).unwrap_or(0);
+        let (done, all) = (half(both >> 32), half(both));
         (done > 0).then(|| f64::from(done) / f64::from(all.max(done)))
     }
 }

@@ -205,6 +205,9 @@ pub enum Offer {
     Reload(PathBuf),
 }
 
+/// The words around an object's name, and the change of the object.
+type NamedChange = ([&'static str; 2], fn(&mut Object));
+
 impl Offer {
     /// Returns the label of its button.
     pub const fn label(&self) -> &'static str {
@@ -231,7 +234,7 @@ impl Offer {
     }
 
     /// Returns the change of an object that it makes, and the words around the object's name.
-    fn change(&self) -> Option<([&'static str; 2], fn(&mut Object))> {
+    fn change(&self) -> Option<NamedChange> {
         Some(match self {
             Self::TwoSides(_) => {
                 (["Draw both sides of ", ""], |object: &mut Object| object.sides = Sides::Two)

@@ -224,7 +224,7 @@ mod tests {
             let entries = cache.entries.lock().unwrap();
             assert_eq!(entries.map.len(), kept, "limit {most}");
             assert_eq!(entries.order.len(), kept, "limit {most}");
-            assert_eq!(entries.bytes, entries.map.values().map(|entry| entry.bytes).sum());
+            assert_eq!(entries.bytes, entries.map.values().map(|entry| entry.bytes).sum::<usize>());
         }
         // Models that are done take no memory.
         let cache = StageCache::new(usize::MAX);

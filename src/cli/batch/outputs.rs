@@ -142,11 +142,14 @@ fn twins(keys: &[u64]) -> BTreeSet<usize> {
     same.filter(|same| same.len() > 1).flatten().copied().collect()
 }
 
+/// The number of the texts, the neighbour on the other side, and the rest on this side.
+type Form = (usize, Option<char>, String);
+
 /// One end of the names of pictures: the texts of the views, and what follows them to one side.
 #[derive(Debug, Default)]
 struct End {
-    /// The number of the texts, the neighbour on the other side, and the rest on this side.
-    forms: BTreeSet<(usize, Option<char>, String)>,
+    /// The forms of this end.
+    forms: BTreeSet<Form>,
     /// The hash of the rest on the other side, for each row.
     keys: Vec<u64>,
 }
@@ -233,10 +236,10 @@ impl Keys {
         let texts: HashMap<usize, &Vec<String>> =
             self.texts.iter().map(|(texts, number)| (*number, texts)).collect();
         let [from_end, from_begin] = &self.ends;
-        let reversed = |form: &(usize, Option<char>, String), text: &str| -> String {
+        let reversed = |form: &Form, text: &str| -> String {
             form.2.chars().rev().chain(text.chars().rev()).chain(form.1).collect()
         };
-        let forward = |form: &(usize, Option<char>, String), text: &str| -> String {
+        let forward = |form: &Form, text: &str| -> String {
             form.2.chars().chain(text.chars()).chain(form.1).collect()
         };
         if is_prefix_free(from_end, &texts, &reversed) {
@@ -255,7 +258,7 @@ fn is_odd(text: &str) -> bool {
 fn is_prefix_free(
     end: &End,
     texts: &HashMap<usize, &Vec<String>>,
-    name: &dyn Fn(&(usize, Option<char>, String), &str) -> String,
+    name: &dyn Fn(&Form, &str) -> String,
 ) -> bool {
     let count: usize = end.forms.iter().map(|form| texts[&form.0].len()).sum();
     if end.forms.len() > MOST_ENDS || count > MOST_TEXTS {

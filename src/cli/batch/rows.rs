@@ -176,8 +176,11 @@ struct RowReader {
     pictures: usize,
     format: &'static str,
     /// The values of the last row, and its kind: most rows are of the kind of the one before.
-    last: Option<(Vec<(String, Value)>, Arc<RowKind>)>,
+    last: Option<(Values, Arc<RowKind>)>,
 }
+
+/// The values of a row, by their columns.
+type Values = Vec<(String, Value)>;
 
 impl RowReader {
     fn new(arguments: &Batch) -> Result<Self, Failure> {
