@@ -3,7 +3,7 @@
 //! Pictures are drawn in turn, so that a change of the machine's speed affects all alike. The error
 //! is the root mean square difference from the ideal in byte steps, over all pixels. Drawing the
 //! whole ideal would take too long, so it is drawn in windows of 16 x 16 pixels, chosen at random
-//! from [strata](super::strata) of similar detail. Each figure has its interval, and is measured
+//! from strata of similar detail. Each figure has its interval, and is measured
 //! further while that is wide.
 //!
 //! The work is divided into short steps, so an idle editor can measure and stop at any time.
