@@ -41,7 +41,7 @@ fn lab(editor: &Editor) -> &Laboratory {
 /// Lets the window alternately rest and draw until a condition holds.
 #[track_caller]
 fn until(editor: &mut Editor, what: &str, done: impl Fn(&Editor) -> bool) {
-    for _ in 0..600 {
+    for _ in 0..1800 {
         if done(editor) {
             return editor.settle();
         }

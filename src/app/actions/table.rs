@@ -114,7 +114,7 @@ actions! {
     SelectAll Edit ONCE [Command(Key::A)]
         "Select all" "Selects all items of the subject; pressed again, everything."
         "everything several multiple";
-    Escape Edit ONCE [Named(Key::Escape)]
+    Escape Window ONCE [Named(Key::Escape)]
         "Cancel" "Dismisses notices, cancels work or deselects; twice with nothing left, it quits."
         "escape dismiss abort stop close deselect quit";
     SelectNone Edit ONCE []
