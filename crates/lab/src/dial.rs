@@ -462,7 +462,7 @@ mod tests {
         all.filter(|it| it.samples != Samples::TwoFiftySix)
     }
 
-    /// 95% are promised. The windows are smaller than those of the dial, as the pictures are.
+    /// The intervals promise 95%. Pictures and windows are smaller than in the dial.
     #[test]
     fn the_true_error_is_within_its_interval_for_190_of_200_pairs_of_scene_and_settings() {
         const SIDE: usize = 8;

@@ -15,6 +15,7 @@ use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 
+use super::estimate::{RESAMPLES, UNDISTURBED};
 use super::picture_source::{PictureSource, hash};
 use super::statistics::{Quartiles, quantile_of};
 use super::timing::{Clock, Work};
@@ -33,9 +34,6 @@ pub struct Limits {
     pub time: Duration,
 }
 
-/// The quantile of the times of one side that stands for an undisturbed picture.
-const UNDISTURBED: f64 = 0.2;
-
 /// An interval of this width, relative to the ratio, is narrow enough to stop.
 const NARROW: f64 = 0.03;
 
@@ -47,9 +45,6 @@ const LEAST_SLOW: usize = 2;
 
 /// A bootstrap over fewer pairs is too narrow.
 const FEW: usize = 7;
-
-/// The resamples of a bootstrap.
-const RESAMPLES: usize = 400;
 
 /// Connects measurements with the user, who waits for them and may disturb them.
 #[derive(Clone, Debug, Default)]
