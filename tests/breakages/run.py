@@ -6,15 +6,19 @@
     tests/breakages/run.py untried            tries those that the page calls "not tried"
     tests/breakages/run.py page               makes docs/breakages.md of what was tried
 
-Each breakage is made in a copy of the sources under target/breakages, never in the sources. The copy
-is compiled without the window and for one level of instructions, so a breakage takes a minute. What
-came of it is kept there, one line a breakage, so that shards may run one after the other or on several
-machines. A breakage that no longer fits the sources, or that is not compiled, is an error, and so is a
-case that fails in the sound copy.
+Breakages are made in a copy of the sources under target/breakages, never in the sources. The copy is
+compiled once, without the window and for one level of instructions, with the sound and the broken body
+of each function (mutant schemata: Untch, Offutt and Harrold, ISSTA 1993); an environment variable says
+which one runs. What lies outside of functions is compiled alone, and so is `alone = true`. What came of
+a breakage is kept, one line each, so that shards may run one after the other or on several machines. A
+breakage that no longer fits the sources, or that is not compiled, is an error, and so is a case that
+fails in the sound copy.
 
 A case is the number of a hard case, or the name of a proof.
 """
+import collections
 import datetime
+import os
 import pathlib
 import re
 import subprocess
@@ -26,19 +30,32 @@ WORK = ROOT / "target" / "breakages"
 TABLE = tomllib.loads((ROOT / "tests/breakages/table.toml").read_text())["breakage"]
 UNTRIED = "not tried"
 
+# Beginnings of functions whose body runs at run time, as rustfmt writes them.
+FUNCTION = re.compile(r"^( *)(?:pub(?:\([\w ]+\))? )?(?:unsafe )?fn .*?(?<![;}])\{\n", re.MULTILINE | re.DOTALL)
+# The environment variable with the number of the breakage that runs.
+BROKEN = "MARRAZTU_BROKEN"
+SWITCH = f"""
+/// Whether this breakage runs.
+#[must_use]
+pub fn broken(number: u32) -> bool {{
+    static NUMBER: std::sync::OnceLock<Option<u32>> = std::sync::OnceLock::new();
+    *NUMBER.get_or_init(|| std::env::var("{BROKEN}").ok()?.parse().ok()) == Some(number)
+}}
+"""
+
 
 def output(*command, **options):
     return subprocess.run(command, capture_output=True, text=True, **options)
 
 
-def copy(to):
+def copy(to, changed):
     """Brings a copy of the sources up to date, without touching what is the same there."""
     listed = output("git", "ls-files", "-co", "--exclude-standard", cwd=ROOT).stdout.split("\n")
     for name in filter(None, listed):
         source, target = ROOT / name, to / name
         if not source.is_file():
             continue
-        data = source.read_bytes()
+        data = changed[name].encode() if name in changed else source.read_bytes()
         if name == ".cargo/config.toml":
             data = data.replace(b"rustflags = [", b'rustflags = ["--cfg=one_level", ')
         put(target, data)
@@ -50,20 +67,20 @@ def put(target, data):
         target.write_bytes(data)
 
 
-def run(where, target, *names):
+def run(where, target, *names, broken=""):
     """Compiles and runs a test target."""
     run = output(
         "cargo", "test", "--locked", "--no-default-features", "--features", "cli", "--target-dir", WORK / "build",
-        "--test", target, "--", *names, cwd=where,
+        "--test", target, "--", *names, cwd=where, env=os.environ | {BROKEN: broken},
     )
     if f"Running tests/{target}" not in run.stderr:
         sys.exit(f"run.py: not compiled:\n{run.stderr}")
     return run
 
 
-def hard_cases(where, *names):
+def hard_cases(where, *names, broken=""):
     """The hard cases that fail, by name."""
-    tried = run(where, "hard_cases", *names)
+    tried = run(where, "hard_cases", *names, broken=broken)
     failed = re.findall(r"^test (?:\w+::)*(\w+) \.\.\. FAILED", tried.stdout, re.MULTILINE)
     if tried.returncode and not failed:
         # The whole process ended: a crash is noticed, too.
@@ -71,13 +88,13 @@ def hard_cases(where, *names):
     return failed
 
 
-def claimed(where, case):
+def claimed(where, case, broken=""):
     """What fails of the tests that claim a case."""
     if isinstance(case, int):
-        return hard_cases(where, f"case_{case}_")
+        return hard_cases(where, f"case_{case}_", broken=broken)
     if case == "paths":
-        return ["the test of colour paths"] if run(where, "paths").returncode else []
-    return [f"the proof {case}"] if run(where, "proofs", case).returncode else []
+        return ["the test of colour paths"] if run(where, "paths", broken=broken).returncode else []
+    return [f"the proof {case}"] if run(where, "proofs", case, broken=broken).returncode else []
 
 
 def broken(text, breakage):
@@ -87,24 +104,56 @@ def broken(text, breakage):
     return text.replace(breakage["from"], breakage["to"])
 
 
+def body(text, breakage):
+    """The range of the body of the innermost function around a breakage, or None."""
+    begin = text.index(breakage["from"])
+    found = None
+    for function in FUNCTION.finditer(text):
+        end = text.find(f"\n{function[1]}}}\n", function.end() - 1) + 1
+        if function.end() <= begin and begin + len(breakage["from"]) <= end:
+            found = (function.end(), end)
+    return None if breakage.get("alone") else found
+
+
+def switched(text, bodies, file):
+    """A file in which each of these bodies, {range: numbers of breakages}, is a choice among all its versions."""
+    here = "crate" if file.startswith("crates/core/src/") else "marraztu_core"
+    for (begin, end), numbers in sorted(bodies.items(), reverse=True):
+        sound = text[begin:end]
+        versions = [f"if {here}::broken({i}) {{\n{broken(sound, TABLE[i])}}} else " for i in numbers]
+        text = f"{text[:begin]}{''.join(versions)}{{\n{sound}}}\n{text[end:]}"
+    return text
+
+
+def schemata(mine):
+    """The sources with all breakages of functions in them, and the numbers of these breakages."""
+    bodies = collections.defaultdict(lambda: collections.defaultdict(list))
+    for i in mine:
+        file = TABLE[i]["file"]
+        if (where := body((ROOT / file).read_text(), TABLE[i])):
+            bodies[file][where].append(i)
+    library = "crates/core/src/lib.rs"
+    texts = {file: switched((ROOT / file).read_text(), bodies[file], file) for file in bodies}
+    texts[library] = texts.get(library, (ROOT / library).read_text()) + SWITCH
+    return texts, {i for those in bodies.values() for numbers in those.values() for i in numbers}
+
+
 def attempt(mine, where):
-    copy(where)
     for breakage in TABLE:
         broken((ROOT / breakage["file"]).read_text(), breakage)
+    texts, together = schemata(mine)
+    copy(where, texts)
     for case in sorted({TABLE[i]["case"] for i in mine}, key=str):
         if failed := claimed(where, case):
             sys.exit(f"run.py: fails unbroken: {', '.join(failed)}")
-    for i in mine:
-        breakage = TABLE[i]
-        file = where / breakage["file"]
-        sound = file.read_text()
-        file.write_text(broken(sound, breakage))
-        try:
-            caught = claimed(where, breakage["case"])
-            # Not by the case that claims it: by any?
-            others = [] if caught else hard_cases(where)
-        finally:
-            file.write_text(sound)
+    # Those in one program first.
+    for i in sorted(mine, key=lambda i: i not in together):
+        breakage, number = TABLE[i], str(i)
+        if i not in together:
+            copy(where, {breakage["file"]: broken((ROOT / breakage["file"]).read_text(), breakage)})
+        caught = claimed(where, breakage["case"], number)
+        # Not by the case that claims it: by any?
+        others = [] if caught else hard_cases(where, broken=number)
         today = datetime.datetime.now(datetime.timezone.utc).date().isoformat()
         commit = output("git", "describe", "--always", "--dirty", "--exclude", "*", cwd=ROOT).stdout.strip()
         came = "caught" if caught else "only by others" if others else "SURVIVED"

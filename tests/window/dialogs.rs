@@ -56,7 +56,11 @@ impl Editor {
     pub(crate) fn wait_until(&mut self, done: impl Fn(&Self) -> bool) {
         let begun = Instant::now();
         while !done(self) {
-            assert!(begun.elapsed() < Duration::from_secs(20), "waited too long");
+            if begun.elapsed() > Duration::from_secs(20) {
+                let labels = self.harness.query_all_by(|_| true).filter_map(|node| node.accesskit_node().label());
+                let shown: Vec<String> = labels.collect();
+                panic!("waited too long; the window shows: {}", shown.join(" | "));
+            }
             self.settle();
             std::thread::sleep(Duration::from_millis(2));
         }

@@ -29,6 +29,9 @@ const WIDTH: f32 = 340.0;
 /// The least width of a notice.
 const LEAST: f32 = 180.0;
 
+/// The height that shows a notice of some lines with its buttons.
+const LEAST_HEIGHT: f32 = 140.0;
+
 /// The share of the width of the picture that notices may cover.
 const SHARE: f32 = 0.42;
 
@@ -120,8 +123,8 @@ fn place(ctx: &Context, picture: Rect, width: f32, state: &State) -> Rect {
     let bottom = greeting.map_or(picture.bottom() - PLATE, |greeting| greeting.top() - 8.0);
     let dial = area("dial").filter(|dial| state.dial.shown && dial.right() > right - width - 20.0);
     let upper = dial.map_or(0.0, |dial| dial.bottom() + 8.0).max(picture.top() + AXES);
-    // In a very low picture, a notice matters more than the overlays.
-    let top = upper.min(bottom - 60.0);
+    // In a low picture, a notice matters more than the overlays.
+    let top = if bottom - upper < LEAST_HEIGHT { picture.top() + 8.0 } else { upper };
     Rect::from_x_y_ranges(right - width..=right, top..=bottom)
 }
 
