@@ -52,7 +52,7 @@ impl Editor {
         leaves
     }
 
-    /// Runs frames until a loading thread has finished.
+    /// Runs frames until a loading thread has finished, and its result is shown.
     pub(crate) fn wait_until(&mut self, done: impl Fn(&Self) -> bool) {
         let begun = Instant::now();
         while !done(self) {
@@ -64,6 +64,7 @@ impl Editor {
             self.settle();
             std::thread::sleep(Duration::from_millis(2));
         }
+        self.settle();
     }
 
     /// Types a path into the program's own file dialog.

@@ -81,6 +81,16 @@ impl Editor {
             self.harness.state().wait_for_picture();
         }
         self.harness.step();
+        let mut frames = 0;
+        while self.harness.state().is_searching() && frames < 1000 {
+            std::thread::sleep(std::time::Duration::from_millis(1));
+            self.harness.step();
+            frames += 1;
+        }
+        // A new notice is laid out in one frame and shown in the next.
+        if frames > 0 {
+            self.harness.run_steps(2);
+        }
     }
 
     pub(crate) fn state(&self) -> &State {

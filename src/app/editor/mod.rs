@@ -308,6 +308,11 @@ impl App {
         }
     }
 
+    /// Returns whether objects that are not visible are being searched for.
+    pub fn is_searching(&self) -> bool {
+        self.searches.are_running()
+    }
+
     /// Waits until the picture is refined as far as it will be.
     /// The next frame shows it.
     pub fn wait_until_refined(&self) {

@@ -34,6 +34,12 @@ pub(crate) struct Searches {
     last: Option<Shot>,
 }
 
+impl Searches {
+    pub(super) fn are_running(&self) -> bool {
+        !(self.running.is_empty() && self.waiting.is_empty())
+    }
+}
+
 /// The size of the picture before the window has one.
 const SIZE: Size = Size::new(800, 600);
 
