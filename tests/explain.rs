@@ -151,7 +151,7 @@ fn every_way_to_blend_and_to_enlarge_adds_up() {
 /// Returns settings with each way to blend, in both kinds of values and both resolutions.
 fn all_blends(settings: &Settings) -> Vec<Settings> {
     let mut all = Vec::new();
-    for transparency in [Transparency::Weighted, Transparency::Objects, Transparency::Exact] {
+    for transparency in [Transparency::Objects, Transparency::Exact] {
         for light_values in [LightValues::Stored, LightValues::Linear] {
             for resolution in [Resolution::Full, Resolution::Half] {
                 let samples = Samples::One;

@@ -291,6 +291,23 @@ fn axes_and_choices_of_older_scene_files_still_open() {
 }
 
 #[test]
+fn a_choice_that_no_longer_exists_opens_as_the_default_with_a_finding() {
+    for (from, to) in [("transparency: Exact", "transparency: Weighted")] {
+        let opened = changed(from, to).unwrap();
+        assert_eq!(opened.settings, Settings::default(), "{to}");
+        let [finding] = &opened.findings[..] else { panic!("{to}: {:?}", opened.findings) };
+        let setting = to.trim_start_matches("samples: 1, ").trim_start_matches("r#");
+        let text = format!("the setting \"{setting}\" no longer exists; the default is used");
+        assert_eq!((finding.kind, &finding.text), (FindingKind::SettingFormer, &text));
+    }
+    // A name with such a word is not a setting.
+    let opened = changed("name: \"r_falke\"", "name: \"transparency: Weighted\"").unwrap();
+    assert_eq!(opened.findings, []);
+    let error = changed("transparency: Exact", "transparency: Bits8").unwrap_err();
+    assert!(error.to_string().contains("Bits8"), "{error}");
+}
+
+#[test]
 fn text_that_cannot_be_parsed_is_refused_with_its_position_in_plain_words() {
     let mut wrong = Vec::new();
     for (from, to, line, reason) in [

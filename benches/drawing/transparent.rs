@@ -8,11 +8,8 @@ use marraztu_core::scene::{Command, Item, ObjectId, Sides};
 use super::shapes;
 use super::stage::{FULL, Stage};
 
-const CHOICES: [(&str, Transparency); 3] = [
-    ("by pixel", Transparency::Exact),
-    ("by object", Transparency::Objects),
-    ("weighted", Transparency::Weighted),
-];
+const CHOICES: [(&str, Transparency); 2] =
+    [("by pixel", Transparency::Exact), ("by object", Transparency::Objects)];
 
 pub(crate) fn measure(criterion: &mut Criterion) {
     let all = [

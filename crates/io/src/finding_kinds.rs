@@ -258,6 +258,9 @@ kinds! {
     ModelUnreadable [Loss]: "a model cannot be read and is shown as a box: @";
     SelectionMissing: "the view selects @, which is not in the scene: the first one is selected";
     OwnerMissing: "@, which is not in the scene";
+    SettingFormer [Joined]:
+        "the setting \"@\" no longer exists; the default is used",
+        "# settings (the first: \"@\") no longer exist; the defaults are used";
 }
 
 /// The most characters of a name that are shown.

@@ -1,6 +1,7 @@
 //! The settings: one choice for each axis of accuracy.
 //!
-//! Each field is one axis of [`super::AXES`]; the editor starts with the default.
+//! Each field is one axis of [`super::AXES`]; the editor starts with the default. Older scene files
+//! may name choices that no longer exist: they are aliases of the default.
 
 use serde::{Deserialize, Serialize};
 
@@ -275,12 +276,11 @@ pub enum Interpolation {
 pub enum Transparency {
     /// Not at all: surfaces that are less than half opaque are not drawn, others are opaque.
     Threshold,
-    /// All at once, as a mean weighted by opacity and nearness.
-    Weighted,
     /// Object by object, the farthest first; each object triangle by triangle.
     Objects,
     /// Pixel by pixel, the farthest first.
     #[default]
+    #[serde(alias = "Weighted")]
     Exact,
 }
 

@@ -8,6 +8,7 @@ mod box_sizes;
 mod fields;
 mod files;
 mod format;
+mod former;
 mod fragment;
 mod light;
 mod message;
@@ -52,7 +53,7 @@ pub struct Opened {
     pub window: WindowState,
     /// The accuracy settings at the time of saving.
     pub settings: Settings,
-    /// The findings in the models and textures.
+    /// The findings in the file, its models and its textures.
     pub findings: Vec<Finding>,
     /// The content of the file.
     pub content: Fingerprint,
@@ -180,6 +181,7 @@ pub(crate) fn open_text(
     files.load(&file, name, progress)?;
     let mut own = std::mem::take(&mut files.lost);
     let (scene, view) = open::scene(&file, &files, &mut own).map_err(fail)?;
+    former::note(text, &mut own);
     let findings = joined(own.into_list().into_iter().chain(files.findings).collect());
     let (window, settings) = (file.view.window(), file.settings);
     let content = Fingerprint::of(text.as_bytes());

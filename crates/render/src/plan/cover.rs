@@ -34,7 +34,7 @@ impl Cover {
             // No texel can raise the product to one half.
             Transparency::Threshold if opacity < 0.5 => Self::Nothing,
             Transparency::Threshold => Self::Threshold(opacity),
-            Transparency::Weighted | Transparency::Objects | Transparency::Exact => {
+            Transparency::Objects | Transparency::Exact => {
                 if opacity == 0.0 {
                     Self::Nothing
                 } else if opacity < 1.0 || fades {

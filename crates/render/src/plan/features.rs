@@ -240,7 +240,6 @@ fn transparency(it: &Facts<'_>) -> EffectState {
     let how = match it.settings.transparency {
         Transparency::Exact => "pixel by pixel, the farthest first",
         Transparency::Objects => "object by object, the farthest first",
-        Transparency::Weighted => "a weighted mean",
         Transparency::Threshold => return EffectState::left_out("a threshold of one half"),
     };
     any(it, |shaded| shaded.opacity.is_some(), how).unwrap_or(EffectState::left_out("it is opaque"))

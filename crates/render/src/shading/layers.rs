@@ -5,23 +5,17 @@
 //! With four samples per pixel, each sample has separate layers. Samples that show the same
 //! triangles in the same order throughout a block are coloured once.
 
-use crate::simd::dispatch;
-use fearless_simd::Level;
-
 use super::blend::Blend;
 use super::colors::Sums;
 use super::context::ShadingContext;
 use super::interpolated::ShadingNumber;
 use super::resolve::add_other;
 use super::surface::{Out, Shader};
-use crate::frame::{Eye, FramePlan};
-use crate::raster::depth_format;
-use crate::raster::entries::key;
+use crate::frame::FramePlan;
 use crate::raster::layers::Layers;
 use crate::raster::tile::Visibility;
 use crate::raster::visibility_buffer::{Visible, seen};
 use crate::screen::tiles::BLOCK_PIXELS;
-use marraztu_core::accuracy::Transparency;
 
 /// The layers of a tile, and the colours of one sample of a block.
 #[derive(Debug, Default)]
@@ -62,11 +56,10 @@ impl Layered {
                 // First the opaque surface, then the layers over it from far to near.
                 let mut behind = Sums::new(plan.variants.are_linear());
                 shader.add_entries(context, &opaque, corner, &mut behind);
-                blend.begin(|place| behind.parts(place), plan.transparency);
+                blend.begin(|place| behind.parts(place));
                 while more {
                     for i in 0..layers.len() {
                         let row = layers.row(plan.transparency, i);
-                        blend.place(level, || distances(level, plan, &row));
                         shader.color_triangles(context, &row, corner, &mut Out::Layer(blend));
                     }
                     // A pixel with more layers than a list holds is gathered again.
@@ -83,8 +76,7 @@ impl Layered {
     fn note_sequence(&mut self, plan: &FramePlan, samples: usize, opaque: &[u64; BLOCK_PIXELS]) {
         let Self { layers, sequence, .. } = self;
         sequence.clear();
-        // The weights of a mean differ between samples.
-        if samples > 1 && layers.are_all() && plan.transparency != Transparency::Weighted {
+        if samples > 1 && layers.are_all() {
             // Depths may differ between samples; only primitives and their order matter.
             let number = |word: &u64| word & u64::from(u32::MAX);
             sequence.extend(opaque.iter().map(number));
@@ -93,25 +85,6 @@ impl Layered {
             }
         }
     }
-}
-
-/// Returns the distances of words of the visibility buffer along the observer's axis, in view
-/// space.
-fn distances(level: Level, plan: &FramePlan, words: &[u64; BLOCK_PIXELS]) -> [f64; BLOCK_PIXELS] {
-    let format = plan.variants.depth;
-    let mut depths = [0.0; BLOCK_PIXELS];
-    for (depth, word) in depths.iter_mut().zip(words) {
-        *depth = f64::from(depth_format::depth(format, key(*word)));
-    }
-    // The entries zz and zw of the projection.
-    let (zz, zw) = (plan.clip_from_view.z_axis.z, plan.clip_from_view.w_axis.z);
-    // Inverts the projection, which maps z to zw / w - zz, or to zz z + zw if parallel.
-    let all = depths.iter_mut();
-    match plan.eye {
-        Eye::Point => dispatch!(level, _ => all.for_each(|depth| *depth = zw / (*depth + zz))),
-        Eye::Parallel => dispatch!(level, _ => all.for_each(|depth| *depth = (zw - *depth) / zz)),
-    }
-    depths
 }
 
 impl<T: ShadingNumber> Shader<T> {

@@ -14,10 +14,6 @@ pub(super) const TRANSPARENCY: Axis = Axis {
         choice!("threshold" "Threshold" transparency = Transparency::Threshold,
             "Surfaces that are less than half opaque are not drawn, others are opaque.",
             "everything behind a surface, or the whole surface, is missing"),
-        choice!("weighted" "Weighted mean" transparency = Transparency::Weighted,
-            "A mean of all layers, weighted by opacity and nearness (McGuire and Bavoil, 2013).",
-            "none for one layer; with more, up to the difference between their colours")
-        .slower_because("it also lists all layers of a pixel, and weights each"),
         choice!("objects" "By object" transparency = Transparency::Objects,
             "Object by object, the farthest first; each object triangle by triangle.",
             "the wrong order if objects intersect, or if one overlaps itself")

@@ -1,0 +1,51 @@
+//! Finds choices of older scene files that no longer exist.
+//!
+//! [`Settings`](marraztu_core::accuracy::Settings) read them as the default of their axis. That
+//! changes the picture, so each is noted here, by parsing the settings a second time.
+
+use serde::Deserialize;
+
+use crate::findings::{FindingKind, Findings};
+
+/// A choice of an axis.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
+enum Choice {
+    Weighted,
+    /// Any choice that still exists, or that equals the default.
+    #[default]
+    #[serde(other)]
+    Other,
+}
+
+/// The former choices, as they may occur in a text.
+const FORMER: [Choice; 1] = [Choice::Weighted];
+
+/// The axes that lost choices.
+#[derive(Default, Deserialize)]
+#[serde(default)]
+struct Choices {
+    transparency: Choice,
+}
+
+/// The part of a scene file with the settings.
+#[derive(Deserialize)]
+struct Part {
+    #[serde(default)]
+    settings: Choices,
+}
+
+/// Notes the former choices in the text of a valid scene file.
+pub(super) fn note(text: &str, findings: &mut Findings) {
+    // Few files name one, perhaps as a part of another word; all others are parsed only once.
+    if !FORMER.iter().any(|choice| text.contains(&format!("{choice:?}"))) {
+        return;
+    }
+    let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
+    let Ok(Part { settings }) = ron::from_str(text) else { return };
+    let Choices { transparency } = settings;
+    for (axis, choice) in [("transparency", transparency)] {
+        if choice != Choice::Other {
+            findings.add(FindingKind::SettingFormer, &format!("{axis}: {choice:?}"), None);
+        }
+    }
+}
