@@ -292,7 +292,14 @@ fn axes_and_choices_of_older_scene_files_still_open() {
 
 #[test]
 fn a_choice_that_no_longer_exists_opens_as_the_default_with_a_finding() {
-    for (from, to) in [("transparency: Exact", "transparency: Weighted")] {
+    for (from, to) in [
+        ("transparency: Exact", "transparency: Weighted"),
+        ("r#shadow-method: Exact", "r#shadow-method: Map512Pcf"),
+        ("r#shadow-method: Exact", "r#shadow-method: Map1024"),
+        ("r#shadow-method: Exact", "r#shadow-method: Map1024Pcf"),
+        ("r#shadow-method: Exact", "r#shadow-method: Map4096"),
+        ("r#shadow-method: Exact", "r#shadow-method: Map4096Pcf"),
+    ] {
         let opened = changed(from, to).unwrap();
         assert_eq!(opened.settings, Settings::default(), "{to}");
         let [finding] = &opened.findings[..] else { panic!("{to}: {:?}", opened.findings) };
@@ -303,8 +310,8 @@ fn a_choice_that_no_longer_exists_opens_as_the_default_with_a_finding() {
     // A name with such a word is not a setting.
     let opened = changed("name: \"r_falke\"", "name: \"transparency: Weighted\"").unwrap();
     assert_eq!(opened.findings, []);
-    let error = changed("transparency: Exact", "transparency: Bits8").unwrap_err();
-    assert!(error.to_string().contains("Bits8"), "{error}");
+    let error = changed("transparency: Exact", "transparency: Map1024").unwrap_err();
+    assert!(error.to_string().contains("Map1024"), "{error}");
 }
 
 #[test]

@@ -331,7 +331,7 @@ fn settings(rng: &mut Rng) -> Settings {
             LightValues::Linear,
         ]),
         shadow_method: match rng.percent(20) {
-            true => rng.one_of(&[ShadowMethod::Map512, ShadowMethod::Map512Pcf]),
+            true => rng.one_of(&[ShadowMethod::Map512, ShadowMethod::Map2048Pcf]),
             false => ShadowMethod::Exact,
         },
         terminator: rng.one_of(&[Terminator::Triangles, Terminator::Smooth]),

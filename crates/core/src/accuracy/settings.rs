@@ -320,22 +320,14 @@ pub enum LightValues {
 pub enum ShadowMethod {
     /// By a shadow map of 512 x 512 texels.
     Map512,
-    /// By the mean of nine texels of such a map.
-    Map512Pcf,
-    /// By a shadow map of 1024 x 1024 texels.
-    Map1024,
-    /// By the mean of nine texels of such a map.
-    Map1024Pcf,
     /// By a shadow map of 2048 x 2048 texels.
     Map2048,
     /// By the mean of nine texels of such a map.
     Map2048Pcf,
-    /// By a shadow map of 4096 x 4096 texels.
-    Map4096,
-    /// By the mean of nine texels of such a map.
-    Map4096Pcf,
     /// By rays against all triangles, in exact arithmetic.
     #[default]
+    #[serde(alias = "Map512Pcf", alias = "Map1024", alias = "Map1024Pcf")]
+    #[serde(alias = "Map4096", alias = "Map4096Pcf")]
     Exact,
 }
 
@@ -353,13 +345,8 @@ impl ShadowMethod {
     pub const fn map(self) -> Option<ShadowMapForm> {
         let (side, is_filtered) = match self {
             Self::Map512 => (512, false),
-            Self::Map512Pcf => (512, true),
-            Self::Map1024 => (1024, false),
-            Self::Map1024Pcf => (1024, true),
             Self::Map2048 => (2048, false),
             Self::Map2048Pcf => (2048, true),
-            Self::Map4096 => (4096, false),
-            Self::Map4096Pcf => (4096, true),
             Self::Exact => return None,
         };
         Some(ShadowMapForm { side, is_filtered })

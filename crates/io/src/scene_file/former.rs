@@ -10,6 +10,11 @@ use crate::findings::{FindingKind, Findings};
 /// A choice of an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 enum Choice {
+    Map512Pcf,
+    Map1024,
+    Map1024Pcf,
+    Map4096,
+    Map4096Pcf,
     Weighted,
     /// Any choice that still exists, or that equals the default.
     #[default]
@@ -18,13 +23,22 @@ enum Choice {
 }
 
 /// The former choices, as they may occur in a text.
-const FORMER: [Choice; 1] = [Choice::Weighted];
+const FORMER: [Choice; 6] = [
+    Choice::Map512Pcf,
+    Choice::Map1024,
+    Choice::Map1024Pcf,
+    Choice::Map4096,
+    Choice::Map4096Pcf,
+    Choice::Weighted,
+];
 
 /// The axes that lost choices.
 #[derive(Default, Deserialize)]
 #[serde(default)]
 struct Choices {
     transparency: Choice,
+    #[serde(rename = "shadow-method")]
+    shadow_method: Choice,
 }
 
 /// The part of a scene file with the settings.
@@ -42,8 +56,8 @@ pub(super) fn note(text: &str, findings: &mut Findings) {
     }
     let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
     let Ok(Part { settings }) = ron::from_str(text) else { return };
-    let Choices { transparency } = settings;
-    for (axis, choice) in [("transparency", transparency)] {
+    let Choices { transparency, shadow_method } = settings;
+    for (axis, choice) in [("transparency", transparency), ("shadow-method", shadow_method)] {
         if choice != Choice::Other {
             findings.add(FindingKind::SettingFormer, &format!("{axis}: {choice:?}"), None);
         }

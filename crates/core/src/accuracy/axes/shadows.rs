@@ -32,32 +32,12 @@ pub(super) const SHADOW_METHOD: Axis = Axis {
             "A shadow map of 512 x 512 texels with a slope-scaled bias (Williams, 1978).",
             "stair steps of a texel along shadows, and light leaks under objects on the ground")
         .slower_because(DRAWN_AGAIN),
-        choice!("map-512-pcf" "Map 512 PCF" shadow_method = ShadowMethod::Map512Pcf,
-            "The same, averaged over 3 x 3 texels (Reeves, Salesin and Cook, 1987).",
-            "borders blurred over three texels, and light leaks under objects on the ground")
-        .slower_because(DRAWN_AGAIN),
-        choice!("map-1024" "Map 1024" shadow_method = ShadowMethod::Map1024,
-            "A shadow map of 1024 x 1024 texels.",
-            "steps half as large")
-        .slower_because(DRAWN_AGAIN),
-        choice!("map-1024-pcf" "Map 1024 PCF" shadow_method = ShadowMethod::Map1024Pcf,
-            "A shadow map of 1024 x 1024 texels, averaged over 3 x 3 texels.",
-            "borders blurred over three texels")
-        .slower_because(DRAWN_AGAIN),
         choice!("map-2048" "Map 2048" shadow_method = ShadowMethod::Map2048,
             "A shadow map of 2048 x 2048 texels.",
             "steps a quarter as large")
         .slower_because(DRAWN_AGAIN),
         choice!("map-2048-pcf" "Map 2048 PCF" shadow_method = ShadowMethod::Map2048Pcf,
-            "A shadow map of 2048 x 2048 texels, averaged over 3 x 3 texels.",
-            "borders blurred over three texels")
-        .slower_because(DRAWN_AGAIN),
-        choice!("map-4096" "Map 4096" shadow_method = ShadowMethod::Map4096,
-            "A shadow map of 4096 x 4096 texels.",
-            "steps an eighth as large")
-        .slower_because(DRAWN_AGAIN),
-        choice!("map-4096-pcf" "Map 4096 PCF" shadow_method = ShadowMethod::Map4096Pcf,
-            "A shadow map of 4096 x 4096 texels, averaged over 3 x 3 texels.",
+            "The same, averaged over 3 x 3 texels (Reeves, Salesin and Cook, 1987).",
             "borders blurred over three texels")
         .slower_because(DRAWN_AGAIN),
         choice!("exact" "Exact" shadow_method = ShadowMethod::Exact,
