@@ -184,16 +184,6 @@ fn a_triangle_across_the_near_plane_is_affine_on_its_clipped_polygon_in_every_co
     }
 }
 
-#[test]
-fn a_triangle_across_the_near_plane_has_spans_on_its_clipped_polygon() {
-    for path in paths() {
-        let spans = |corners: &[Corner]| drawn(corners, &path, Interpolation::EverySixteen);
-        let [clipped, by_hand] = [spans(&FLOOR), spans(&cut())];
-        let other = apart(&clipped, &by_hand);
-        assert!(other < 0.02, "{}: {other} differs from the floor cut by hand", path.name);
-    }
-}
-
 /// Light at corners is interpolated on the screen, too.
 #[test]
 fn vertex_light_of_a_clipped_triangle_is_affine() {

@@ -8,9 +8,7 @@
 mod common;
 
 use common::{at, ball, edit, scene, square};
-use marraztu_core::accuracy::{
-    Arithmetic, Interpolation, LightAt, LightValues, Rounding, Settings, Shot,
-};
+use marraztu_core::accuracy::{Arithmetic, LightAt, LightValues, Rounding, Settings, Shot};
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::Size;
 use marraztu_core::scene::{Command, Item, LightId, Model, ObjectId, Scene, Sides, View};
@@ -121,8 +119,6 @@ fn whatever_fast_paths_cannot_do_is_left_to_fragment_lists() {
     for own in [large(), fine(), finest()] {
         expect("f64", own, f64, (&[ALONE], &[]));
     }
-    let spans = Settings { interpolation: Interpolation::EverySixteen, ..usual };
-    expect("spans", large(), spans, (&[ALONE], &[]));
     let (mut scene, view) = large();
     edit(&mut scene, FIRST, |object| object.sides = Sides::One);
     let red = View { back_faces: true, ..view };

@@ -183,7 +183,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         subpixels: Subpixels::Bits4,
         coverage: Coverage::ScanLines,
         depth: DepthFormat::Bits24,
-        interpolation: Interpolation::EverySixteen,
+        interpolation: Interpolation::Affine,
         tangents: Tangents::Pixel,
         bump_filter: BumpFilter::Nearest,
         light_values: LightValues::Linear,
@@ -293,6 +293,7 @@ fn axes_and_choices_of_older_scene_files_still_open() {
 #[test]
 fn a_choice_that_no_longer_exists_opens_as_the_default_with_a_finding() {
     for (from, to) in [
+        ("interpolation: Perspective", "interpolation: EverySixteen"),
         ("transparency: Exact", "transparency: Weighted"),
         ("r#shadow-method: Exact", "r#shadow-method: Map512Pcf"),
         ("r#shadow-method: Exact", "r#shadow-method: Map1024"),

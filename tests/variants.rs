@@ -398,10 +398,7 @@ fn a_floor_bends_without_perspective() {
     };
     let shown = covered(&exact, &opened.scene).iter().filter(|seen| **seen).count();
     let affine = wrong(&picture(Interpolation::Affine));
-    let sixteen = wrong(&picture(Interpolation::EverySixteen));
     assert!(affine * 5 > shown, "{affine} of {shown}");
-    // Each row of this floor has constant distance, so interpolating sixteen pixels loses nothing.
-    assert!(sixteen * 100 < shown, "{sixteen} of {shown}");
 }
 
 #[test]

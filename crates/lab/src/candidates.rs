@@ -254,11 +254,10 @@ fn is_combined(
 }
 
 /// Choices that exist only for teaching.
-const HISTORICAL: [(&str, &str); 6] = [
+const HISTORICAL: [(&str, &str); 5] = [
     ("coverage", "points"),
     ("coverage", "scan-lines"),
     ("interpolation", "affine"),
-    ("interpolation", "every-sixteen"),
     ("stretched", "as-it-is"),
     ("rounding", "truncated"),
 ];

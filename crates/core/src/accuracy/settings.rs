@@ -264,10 +264,9 @@ pub enum DepthFormat {
 pub enum Interpolation {
     /// Linearly on the screen.
     Affine,
-    /// With perspective at every sixteenth pixel of a row, linearly between them.
-    EverySixteen,
     /// With perspective.
     #[default]
+    #[serde(alias = "EverySixteen")]
     Perspective,
 }
 

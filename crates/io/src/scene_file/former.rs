@@ -10,6 +10,7 @@ use crate::findings::{FindingKind, Findings};
 /// A choice of an axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Deserialize)]
 enum Choice {
+    EverySixteen,
     Map512Pcf,
     Map1024,
     Map1024Pcf,
@@ -23,7 +24,8 @@ enum Choice {
 }
 
 /// The former choices, as they may occur in a text.
-const FORMER: [Choice; 6] = [
+const FORMER: [Choice; 7] = [
+    Choice::EverySixteen,
     Choice::Map512Pcf,
     Choice::Map1024,
     Choice::Map1024Pcf,
@@ -39,6 +41,7 @@ struct Choices {
     transparency: Choice,
     #[serde(rename = "shadow-method")]
     shadow_method: Choice,
+    interpolation: Choice,
 }
 
 /// The part of a scene file with the settings.
@@ -56,8 +59,12 @@ pub(super) fn note(text: &str, findings: &mut Findings) {
     }
     let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
     let Ok(Part { settings }) = ron::from_str(text) else { return };
-    let Choices { transparency, shadow_method } = settings;
-    for (axis, choice) in [("transparency", transparency), ("shadow-method", shadow_method)] {
+    let Choices { transparency, shadow_method, interpolation } = settings;
+    for (axis, choice) in [
+        ("transparency", transparency),
+        ("shadow-method", shadow_method),
+        ("interpolation", interpolation),
+    ] {
         if choice != Choice::Other {
             findings.add(FindingKind::SettingFormer, &format!("{axis}: {choice:?}"), None);
         }

@@ -7,7 +7,7 @@ use crate::frame::color_path::{ColorPath, ColorPaths, FullPath, ListPath};
 use crate::frame::draw::{Back, Draw, Pipeline, Shaded};
 use crate::frame::{Eye, FramePlan, Viewport};
 use crate::screen::clip::Screen;
-use marraztu_core::accuracy::{Arithmetic, Coverage, Interpolation, LightAt, Rounding};
+use marraztu_core::accuracy::{Arithmetic, Coverage, LightAt, Rounding};
 
 /// Chooses the paths of all draws of a frame.
 pub(crate) fn choose(plan: &FramePlan, to: &mut ColorPaths) {
@@ -30,7 +30,7 @@ pub(crate) fn color_path(plan: &FramePlan, draw: &Draw, pipeline: u32) -> ColorP
 fn full_path(plan: &FramePlan, draw: &Draw, pipeline: &Pipeline) -> FullPath {
     let shaded = match pipeline {
         pipeline if is_uniform(plan, pipeline) => return FullPath::Fill,
-        // Red back faces and spans of sixteen pixels need the triangle of each pixel.
+        // Red back faces need the triangle of each pixel.
         Pipeline::Shaded(shaded) if is_plain(plan, draw) => shaded,
         Pipeline::Shaded(_) | Pipeline::Flat(_) => return FullPath::List,
     };
@@ -79,12 +79,9 @@ fn list_path(plan: &FramePlan, draw: &Draw, pipeline: &Pipeline) -> ListPath {
     }
 }
 
-/// Whether fast paths may be used at all: they compute in f32, and do not know red back faces or
-/// spans.
+/// Whether fast paths may be used at all: they compute in f32, and do not know red back faces.
 fn is_plain(plan: &FramePlan, draw: &Draw) -> bool {
-    plan.arithmetic == Arithmetic::F32
-        && plan.variants.interpolation != Interpolation::EverySixteen
-        && draw.back != Back::Red
+    plan.arithmetic == Arithmetic::F32 && draw.back != Back::Red
 }
 
 /// Whether all pixels of a triangle have one colour.
@@ -136,7 +133,6 @@ pub(crate) fn colors_early(plan: &FramePlan) -> bool {
     plan.light_at == LightAt::Vertex
         && plan.arithmetic == Arithmetic::F32
         && plan.variants.coverage == Coverage::Exact
-        && plan.variants.interpolation != Interpolation::EverySixteen
         // Early colours are computed without shadow rays.
         && !plan.shadows.are_cast()
         && few_are_hidden(plan)

@@ -1,7 +1,7 @@
 //! Weights of a triangle's corners at any pixel, by the interpolation of the frame: for clipped
 //! triangles, and wherever f32 is not accurate enough.
 //!
-//! Perspective-correct weights follow from clip space. The other interpolations are defined on the
+//! Perspective-correct weights follow from clip space. Affine interpolation is defined on the
 //! screen, on which a clipped triangle is a polygon. It is interpolated as it is rasterised, and as
 //! ancestor B drew it: as a fan of pieces around its first corner. The corners of the polygon have
 //! exact weights of the triangle's own corners; inside a piece, these weights are interpolated.
@@ -10,8 +10,7 @@ use fearless_simd::{Simd, SimdBase as _, f64x8};
 use glam::DVec3;
 
 use super::clip::{Clip, Screen};
-use super::coverage::{Grid, Snapped, Triangle};
-use super::spans::Row;
+use super::coverage::{Snapped, Triangle};
 use super::weights::{HomogeneousWeights, barycentric, with_first};
 use crate::accel::Accelerated as _;
 use crate::frame::FramePlan;
@@ -32,8 +31,6 @@ struct Piece {
     triangle: Triangle,
     /// The weights of the clipped triangle's corners at each corner of the piece.
     weights: [DVec3; 3],
-    /// The corners, their 1/w and the grid, for spans of sixteen pixels.
-    spans: Option<([Snapped; 3], [f64; 3], Grid)>,
 }
 
 impl ClippedWeights {
@@ -53,8 +50,7 @@ impl ClippedWeights {
         let exact = HomogeneousWeights::new(plan, draw, number, shift);
         let pieces = match interpolation {
             Interpolation::Perspective => Vec::new(),
-            Interpolation::Affine => pieces(plan, draw, number, shift, false),
-            Interpolation::EverySixteen => pieces(plan, draw, number, shift, true),
+            Interpolation::Affine => pieces(plan, draw, number, shift),
         };
         Self { exact, pieces }
     }
@@ -107,17 +103,8 @@ impl ClippedWeights {
         // The smallest coordinate is negative outside of a piece, the more the farther away.
         let (piece, parts) =
             parts.max_by(|(_, a), (_, b)| a.min_element().total_cmp(&b.min_element()))?;
-        let parts = match &piece.spans {
-            // Spans end at the borders of their piece; pixels beyond are perspective-correct.
-            Some(_) if parts.min_element() < 0.0 => return None,
-            Some((corners, by_w, grid)) => {
-                with_first(Row::new(*corners, *by_w, pixel[1], *grid).at(pixel[0]))
-            }
-            None => {
-                let inside = parts.max(DVec3::ZERO);
-                inside / inside.element_sum()
-            }
-        };
+        let inside = parts.max(DVec3::ZERO);
+        let parts = inside / inside.element_sum();
         let [a, b, c] = piece.weights;
         let weights = a * parts.x + b * parts.y + c * parts.z;
         Some([weights.y, weights.z])
@@ -125,13 +112,7 @@ impl ClippedWeights {
 }
 
 /// Returns the pieces of a triangle on the screen.
-fn pieces(
-    plan: &FramePlan,
-    draw: &Draw,
-    number: u32,
-    shift: [i32; 2],
-    has_spans: bool,
-) -> Vec<Piece> {
+fn pieces(plan: &FramePlan, draw: &Draw, number: u32, shift: [i32; 2]) -> Vec<Piece> {
     let grid = plan.variants.grid();
     let shift = [shift[0] + plan.shift[0], shift[1] + plan.shift[1]];
     let screen = Screen::new(draw.clip_from_object, plan.viewport).on(grid);
@@ -143,11 +124,9 @@ fn pieces(
     let weights: Vec<DVec3> = polygon.iter().map(|corner| weights_of(&corners, corner)).collect();
     let fan = (2..polygon.len()).filter_map(|i| {
         let of = [0, i - 1, i];
-        let corners = of.map(|i| at[i]);
         // Pieces without area cover no pixel.
-        let triangle = Triangle::on(grid, corners)?;
-        let spans = has_spans.then(|| (corners, of.map(|i| 1.0 / polygon[i][3]), grid));
-        Some(Piece { triangle, weights: of.map(|i| weights[i]), spans })
+        let triangle = Triangle::on(grid, of.map(|i| at[i]))?;
+        Some(Piece { triangle, weights: of.map(|i| weights[i]) })
     });
     fan.collect()
 }

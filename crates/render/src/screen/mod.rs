@@ -11,6 +11,5 @@ pub(crate) mod clipped_weights;
 pub mod coverage;
 pub(crate) mod perspective;
 pub(crate) mod sample_positions;
-pub(crate) mod spans;
 pub(crate) mod tiles;
 pub(crate) mod weights;

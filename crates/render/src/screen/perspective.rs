@@ -13,7 +13,7 @@ use marraztu_core::accuracy::Interpolation;
 ///   m1 = l1 / w1 / (l0 / w0 + l1 / w1 + l2 / w2), and m2 alike; 1 / the sum is the pixel's w.
 ///
 /// Affine weights are the coordinates themselves. Even then w is exact, because light is computed
-/// at the true position. Spans of sixteen pixels start with perspective.
+/// at the true position.
 #[inline(always)]
 pub(crate) fn weighed<M: Lanes>(
     interpolation: Interpolation,
@@ -25,9 +25,7 @@ pub(crate) fn weighed<M: Lanes>(
     let w = lanes.lift(1.0) / (w0 + second * (w1 - w0) + third * (w2 - w0));
     match interpolation {
         Interpolation::Affine => ([second, third], w),
-        Interpolation::Perspective | Interpolation::EverySixteen => {
-            ([second * w1 * w, third * w2 * w], w)
-        }
+        Interpolation::Perspective => ([second * w1 * w, third * w2 * w], w),
     }
 }
 

@@ -6,8 +6,7 @@ use glam::DVec3;
 
 use super::clip::{Screen, ScreenVertex};
 use super::clipped_weights::ClippedWeights;
-use super::coverage::{Grid, SUBPIXELS, Snapped, Triangle};
-use super::spans::Row;
+use super::coverage::{SUBPIXELS, Triangle};
 use crate::frame::FramePlan;
 use crate::frame::draw::Draw;
 use marraztu_core::accuracy::Interpolation;
@@ -18,8 +17,6 @@ use marraztu_core::base::math::each;
 pub(crate) enum Weights {
     /// A clipped triangle.
     Cut(ClippedWeights),
-    /// Spans of sixteen pixels, from the corners and their 1/w.
-    Spans([Snapped; 3], [f64; 3], Grid),
     /// Edge functions, if the triangle has an area, and w of each corner (1 without perspective).
     Edges(Option<Triangle>, DVec3),
 }
@@ -65,13 +62,11 @@ impl Weights {
         let grid = plan.variants.grid();
         // Moving all corners one way equals moving the sample the other way.
         let corners = own.map(|vertex| vertex.at().seen_from(grid.offset(shift)));
-        match interpolation {
-            Interpolation::EverySixteen => Self::Spans(corners, w.map(|w| 1.0 / w), grid),
-            Interpolation::Affine => Self::Edges(Triangle::on(grid, corners), DVec3::ONE),
-            Interpolation::Perspective => {
-                Self::Edges(Triangle::on(grid, corners), DVec3::from_array(w))
-            }
-        }
+        let w = match interpolation {
+            Interpolation::Affine => DVec3::ONE,
+            Interpolation::Perspective => DVec3::from_array(w),
+        };
+        Self::Edges(Triangle::on(grid, corners), w)
     }
 
     /// Returns whether the weights follow from edge functions alone.
@@ -84,10 +79,6 @@ impl Weights {
     pub(crate) fn at(&self, pixel: [i32; 2]) -> DVec3 {
         match self {
             Self::Cut(weights) => with_first(weights.at(pixel).0),
-            Self::Spans(corners, by_w, grid) => {
-                let [x, y] = pixel;
-                with_first(Row::new(*corners, *by_w, y, *grid).at(x))
-            }
             Self::Edges(triangle, w) => {
                 // Without an area, the first corner gets all the weight.
                 let parts = triangle.as_ref().map(|triangle| barycentric(triangle, pixel));
@@ -107,7 +98,6 @@ impl Weights {
     pub(crate) fn projected(&self, pixel: [i32; 2]) -> Option<DVec3> {
         match self {
             Self::Cut(weights) => weights.inside(pixel),
-            Self::Spans(..) => None,
             Self::Edges(triangle, w) => {
                 let by_w = with_first(barycentric(triangle.as_ref()?, pixel)) / *w;
                 // The sum is 1 / w of the point: negative behind the observer, close to 0 far away.
@@ -119,7 +109,7 @@ impl Weights {
 
     /// Computes the weights of the second and third corner at eight pixels of a row, starting at
     /// `first`, accurate to a few units in the last place. The array holds the edge functions of
-    /// both corners there. `None` for spans.
+    /// both corners there. `None` for a triangle without area.
     #[inline(always)]
     #[expect(clippy::cast_precision_loss, reason = "the nearest number is meant")]
     pub(crate) fn of_row<S: Simd>(
@@ -130,7 +120,6 @@ impl Weights {
     ) -> Option<[f64x8<S>; 2]> {
         match self {
             Self::Cut(weights) => Some(weights.of_row(simd, first).0),
-            Self::Spans(..) => None,
             Self::Edges(triangle, w) => {
                 let area = triangle.as_ref()?.doubled_area() as f64;
                 let by_w = [1.0 / w.x, 1.0 / w.y, 1.0 / w.z];

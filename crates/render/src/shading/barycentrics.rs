@@ -5,9 +5,8 @@
 use glam::DVec3;
 
 use super::fragments::Fragments;
-use super::triangle_attributes::{AttributeNumber, TriangleAttributes, picked};
+use super::triangle_attributes::{TriangleAttributes, picked};
 use crate::screen::perspective::weighed;
-use crate::screen::spans::{Row, Span};
 use crate::simd::{BATCH, Kernel, Lanes, Number, Real, Vec3};
 use marraztu_core::accuracy::Interpolation;
 
@@ -97,49 +96,5 @@ impl<T: Number> Barycentrics<T> {
         lanes.store(w, &mut self.w, at);
         lanes.store(weights[0], &mut self.weights[0], at);
         lanes.store(weights[1], &mut self.weights[1], at);
-    }
-}
-
-/// Interpolates linearly between every sixteenth pixel of a row, where perspective is applied:
-/// replaces the weights of every fragment inside its triangle by the weights of its span, except in
-/// clipped triangles.
-///
-/// A renderer that draws rows from their left ends computes two divisions for sixteen pixels. Here
-/// the unit is a block of 8 x 8 pixels, so a span is found for each of its rows.
-pub(crate) fn interpolate_spans<T: AttributeNumber>(
-    fragments: &Fragments,
-    attributes: &TriangleAttributes<T>,
-    to: &mut Barycentrics<T>,
-) {
-    let mut row = None;
-    let mut span = None;
-    for i in 0..fragments.len {
-        let slot = fragments.slots[i].cast_unsigned() as usize;
-        // Clipped triangles have the spans of their pieces.
-        if attributes.cut >> slot & 1 == 1 {
-            continue;
-        }
-        let (x, y) = (fragments.x[i], fragments.y[i]);
-        let place = (slot, y);
-        // Row and span are reused while fragments stay in them.
-        let own = match row {
-            Some((known, own)) if known == place => own,
-            _ => {
-                let by_w = [0, 1, 2].map(|corner| attributes.by_w[corner][slot].into());
-                let own = Row::new(attributes.corners(slot), by_w, y, attributes.grid);
-                (row, span) = (Some((place, own)), None);
-                own
-            }
-        };
-        let holds = |span: &Span| span.holds(x);
-        if !span.as_ref().is_some_and(holds) {
-            span = own.span(x);
-        }
-        // Pixels outside of the triangle keep their perspective-correct weights.
-        if let Some(span) = &span {
-            let [second, third] = span.at(x);
-            to.weights[0][i] = T::from_f64(second);
-            to.weights[1][i] = T::from_f64(third);
-        }
     }
 }

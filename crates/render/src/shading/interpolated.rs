@@ -8,7 +8,7 @@ use fearless_simd::{
 };
 use glam::DVec3;
 
-use super::barycentrics::{Barycentrics, Weigh, interpolate_spans};
+use super::barycentrics::{Barycentrics, Weigh};
 use super::context::Group;
 use super::fragments::Fragments;
 use super::full_blocks::{Linear as _, Wide};
@@ -97,10 +97,6 @@ impl<T: ShadingNumber> Barycentrics<T> {
         let outside = fragments.shared || coverage != Coverage::Exact;
         if outside || !T::find(interpolation, level, fragments, attributes, self) {
             self.find_step_by_step(level, fragments, attributes, (plan, draw));
-        }
-        // Spans then replace the weights, which have perspective at every pixel.
-        if interpolation == Interpolation::EverySixteen {
-            interpolate_spans(fragments, attributes, self);
         }
     }
 

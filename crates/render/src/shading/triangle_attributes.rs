@@ -445,7 +445,7 @@ fn prepare<S: Simd>(simd: S, attributes: &mut TriangleAttributes<f32>, vertices:
         let at = at.min(SLOTS - 16);
         let [[x0, y0, _, w0], [x1, y1, _, w1], [x2, y2, _, w2]] =
             corners(simd, &attributes.ids[at..], vertices);
-        // Screen corners are kept, because wide triangles, spans and footprints need them.
+        // Screen corners are kept, because wide triangles and footprints need them.
         for ([own_x, own_y], (x, y)) in
             attributes.corners.iter_mut().zip([(x0, y0), (x1, y1), (x2, y2)])
         {

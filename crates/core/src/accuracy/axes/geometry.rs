@@ -91,11 +91,6 @@ pub(super) const INTERPOLATION: Axis = Axis {
         choice!("affine" "Affine" interpolation = Interpolation::Affine,
             "Linear on the screen, as in ancestor B: no division.",
             "557 texels on a wall from z 2.2 to 100"),
-        choice!("every-sixteen" "Every 16 pixels" interpolation = Interpolation::EverySixteen,
-            "Perspective-correct at every sixteenth pixel of a row, linear between them, as in \
-                games of 1996.",
-            "33 texels on the same wall")
-        .slower_because("finding the ends of spans takes longer than a division per pixel"),
         choice!("perspective" "Perspective" interpolation = Interpolation::Perspective,
             "Perspective-correct at every pixel.",
             "none"),
