@@ -9,7 +9,7 @@ use glam::{DMat4, DVec3};
 use marraztu_core::accuracy::{
     Arithmetic, BumpFilter, Coverage, DepthFormat, Filter, FormerAxis, Interpolation, LightAt,
     LightValues, NormalMatrix, Resolution, Rounding, Samples, Settings, ShadowMethod, SpecularForm,
-    SpecularPower, Subpixels, Tangents, Terminator, Transparency, VertexArithmetic,
+    Subpixels, Tangents, Terminator, Transparency, VertexArithmetic,
 };
 use marraztu_core::base::Shared;
 use marraztu_core::base::color::Color;
@@ -176,7 +176,6 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         resolution: Resolution::Half,
         filter: Filter::Nearest,
         specular: SpecularForm::HalfVector,
-        power: SpecularPower::Schlick,
         rounding: Rounding::Dithered,
         stretched: NormalMatrix::AsItIs,
         vertices: VertexArithmetic::F32,
@@ -192,6 +191,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         terminator: Terminator::Smooth,
         former_normalising: FormerAxis,
         former_faint: FormerAxis,
+        former_power: FormerAxis,
     };
     (scene, view, settings)
 }
@@ -277,17 +277,21 @@ fn the_first_scene_opens_as_it_was() {
 #[test]
 fn axes_and_choices_of_older_scene_files_still_open() {
     for (from, to) in [
-        ("power: Polynomial", "power: Table256, normalising: Newton, faint: LeftOut"),
-        ("power: Polynomial", "power: Squaring"),
+        ("depth: F32Reversed", "depth: F32Reversed, normalising: Newton, faint: LeftOut"),
+        ("depth: F32Reversed", "power: Table256, depth: F32Reversed"),
+        ("depth: F32Reversed", "depth: F32Reversed, power: Polynomial"),
+        ("depth: F32Reversed", "depth: F32Reversed, power: Library"),
         ("vertices: F64", "vertices: F32ComposedInF64"),
     ] {
         let opened = changed(from, to).unwrap();
         assert_eq!((opened.settings, opened.findings), (Settings::default(), Vec::new()), "{to}");
     }
-    assert!(changed("power: Polynomial", "norm: Newton").is_err());
+    assert!(changed("depth: F32Reversed", "norm: Newton").is_err());
     let (scene, view) = default_scene();
     let text = to_text(Path::new("/a"), &scene, &view, &Settings::default()).unwrap();
-    assert!(!text.contains("normalising") && !text.contains("faint"), "{text}");
+    for former in ["normalising", "faint", "power"] {
+        assert!(!text.contains(former), "{text}");
+    }
 }
 
 #[test]
@@ -295,6 +299,7 @@ fn a_choice_that_no_longer_exists_opens_as_the_default_with_a_finding() {
     for (from, to) in [
         ("interpolation: Perspective", "interpolation: EverySixteen"),
         ("transparency: Exact", "transparency: Weighted"),
+        ("samples: 1", "samples: 1, power: Schlick"),
         ("r#shadow-method: Exact", "r#shadow-method: Map512Pcf"),
         ("r#shadow-method: Exact", "r#shadow-method: Map1024"),
         ("r#shadow-method: Exact", "r#shadow-method: Map1024Pcf"),
@@ -308,6 +313,12 @@ fn a_choice_that_no_longer_exists_opens_as_the_default_with_a_finding() {
         let text = format!("the setting \"{setting}\" no longer exists; the default is used");
         assert_eq!((finding.kind, &finding.text), (FindingKind::SettingFormer, &text));
     }
+    // Several of them are one finding.
+    let opened = changed("transparency: Exact", "transparency: Weighted, power: Schlick").unwrap();
+    let texts: Vec<_> = opened.findings.iter().map(|finding| &finding.text[..]).collect();
+    let joined =
+        "2 settings (the first: \"power: Schlick\") no longer exist; the defaults are used";
+    assert_eq!(texts, [joined]);
     // A name with such a word is not a setting.
     let opened = changed("name: \"r_falke\"", "name: \"transparency: Weighted\"").unwrap();
     assert_eq!(opened.findings, []);

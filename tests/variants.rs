@@ -9,8 +9,7 @@ use glam::{DMat4, DVec3};
 use marraztu_core::accuracy::Shot;
 use marraztu_core::accuracy::{
     ACCURACY_PRESETS, AXES, AccuracyPreset, Arithmetic, Axis, Coverage, DepthFormat, Filter,
-    Interpolation, NormalMatrix, Points, Rounding, Settings, SpecularPower, Subpixels,
-    VertexArithmetic,
+    Interpolation, NormalMatrix, Points, Rounding, Settings, Subpixels, VertexArithmetic,
 };
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
@@ -143,26 +142,6 @@ fn every_choice_of_every_axis_changes_its_lesson_or_says_why_not() {
             coarse.word,
             lesson_on(axis).scene
         );
-    }
-}
-
-#[test]
-fn highlights_are_as_wrong_as_their_powers() {
-    let opened = lesson_scene("ball").unwrap();
-    let mut scene = opened.scene;
-    edit(&mut scene, ObjectId(1), |object| {
-        let black = Material::matte([0.0; 3], [0.0; 3]);
-        let material = Material { specular: [1.0; 3], exponent: 76.8, ..black };
-        object.material = MaterialChoice::Own(material);
-    });
-    let picture = |power| {
-        let settings = Settings { power, ..Settings::default() };
-        draw(&scene, &opened.view, &settings, 400)
-    };
-    let exact = picture(SpecularPower::Library);
-    for (power, steps) in [(SpecularPower::Schlick, 30..=52), (SpecularPower::Polynomial, 0..=1)] {
-        let apart = steps_apart(&picture(power), &exact);
-        assert!(steps.contains(&apart), "{power:?}: {apart}");
     }
 }
 

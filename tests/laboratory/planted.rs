@@ -203,28 +203,28 @@ fn the_verdict_names_the_gain_of_samples_and_calls_64_bits_not_worth_it() {
 /// times as long, but not all of them.
 #[test]
 fn a_busy_machine_changes_no_verdict() {
-    let power = Axis::named("power").unwrap();
-    let slow = power.choice("schlick").unwrap();
+    let subpixels = Axis::named("subpixels").unwrap();
+    let slow = subpixels.choice("bits-0").unwrap();
     let verdict_with = |disturbed: &'static Choice| {
-        let mut clock = FakeClock::new(Some((power, slow)));
-        clock.disturbed = Some((power, disturbed));
+        let mut clock = FakeClock::new(Some((subpixels, slow)));
+        clock.disturbed = Some((subpixels, disturbed));
         let findings = found(&mut clock, &mut FakeSource::new(None, None));
         assert_eq!(findings.floor, 0.0);
-        let rows = rows(&findings, &(power, disturbed));
+        let rows = rows(&findings, &(subpixels, disturbed));
         let (_, (point, _), _) = rows.iter().find(|(_, _, here)| *here).unwrap();
         let report = report_on(findings.clone());
-        (point.verdict, report.verdict_on(power), report)
+        (point.verdict, report.verdict_on(subpixels), report)
     };
     // The slow choice is disturbed, and still slower by itself.
     let (verdict, told, report) = verdict_with(slow);
     assert_eq!(verdict, Verdict::Slower, "{told}");
     assert!(told.contains(slow.slower_because.unwrap()), "{told}");
     let panels = Panels::new(&report);
-    let mark = panels.of(Some("power")).marks.iter().find(|mark| mark.label == slow.label);
+    let mark = panels.of(Some("subpixels")).marks.iter().find(|mark| mark.label == slow.label);
     let [from, to] = mark.unwrap().noise;
     assert!(from <= libm::log10(3.0) + 1e-9 && to > libm::log10(3.0), "{from} to {to}");
     // The exact choice is disturbed; it could take as long as the default.
-    let exact = power.most_exact(&Settings::default());
+    let exact = subpixels.most_exact(&Settings::default());
     let (verdict, told, _) = verdict_with(exact);
     assert!(matches!(verdict, Verdict::Alike | Verdict::Busy), "{told}");
     assert!(told.contains(slow.slower_because.unwrap()), "{told}");

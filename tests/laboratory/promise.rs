@@ -8,7 +8,7 @@
 //! reference that differs from the presets, a draft that draws every pixel.
 
 use marraztu_core::accuracy::Shot;
-use marraztu_core::accuracy::{AccuracyPreset, Arithmetic, Samples, Settings, SpecularPower};
+use marraztu_core::accuracy::{AccuracyPreset, Arithmetic, Samples, Settings};
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{Command, Item, MaterialChoice, Scene, View};
 use marraztu_io as io;
@@ -33,8 +33,7 @@ fn preset(word: &str) -> Settings {
 
 /// The default with exact light.
 fn exact_light() -> Settings {
-    let (arithmetic, power) = (Arithmetic::F64, SpecularPower::Library);
-    Settings { arithmetic, power, ..Settings::default() }
+    Settings { arithmetic: Arithmetic::F64, ..Settings::default() }
 }
 
 fn studios() -> Vec<(String, Studio)> {

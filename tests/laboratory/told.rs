@@ -27,14 +27,14 @@ fn report() -> Report {
 
 #[test]
 fn a_choice_that_takes_longer_than_a_more_exact_one_says_why() {
-    let power = Axis::named("power").unwrap();
-    let slow = power.choice("schlick").unwrap();
+    let subpixels = Axis::named("subpixels").unwrap();
+    let slow = subpixels.choice("bits-0").unwrap();
     let why = slow.slower_because.unwrap();
-    let mut clock = FakeClock::new(Some((power, slow)));
+    let mut clock = FakeClock::new(Some((subpixels, slow)));
     let findings = found(&mut clock, &mut FakeSource::new(None, None));
-    let told = Report { findings, ..report() }.verdict_on(power);
+    let told = Report { findings, ..report() }.verdict_on(subpixels);
     assert!(told.contains(why), "{told}");
-    assert!(!report().verdict_on(power).contains(why));
+    assert!(!report().verdict_on(subpixels).contains(why));
 }
 
 /// Whether a choice is measured by itself: not the samples of the ideal.

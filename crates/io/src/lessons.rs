@@ -61,7 +61,6 @@ impl Lesson {
 const TEXTS: &[&str] = &[
     include_str!("../../../assets/lessons/shading.ron"),
     include_str!("../../../assets/lessons/arithmetic.ron"),
-    include_str!("../../../assets/lessons/power.ron"),
     include_str!("../../../assets/lessons/vertices.ron"),
     include_str!("../../../assets/lessons/subpixels.ron"),
     include_str!("../../../assets/lessons/coverage.ron"),

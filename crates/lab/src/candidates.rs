@@ -332,7 +332,6 @@ mod tests {
         for key in [
             "shading",
             "arithmetic",
-            "power",
             "vertices",
             "subpixels",
             "coverage",

@@ -68,7 +68,6 @@ pub const ACCURACY_PRESETS: &[AccuracyPreset] = &[
         what: "Like ancestor A: points every 0.1 unit, lit at vertices, in 32 bits.",
         points: Points::Listed(&[
             ("shading", "vertex"),
-            ("power", "library"),
             ("stretched", "as-it-is"),
             ("vertices", "f32"),
             ("coverage", "points"),

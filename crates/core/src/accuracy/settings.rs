@@ -18,7 +18,6 @@ pub struct Settings {
     pub resolution: Resolution,
     pub filter: Filter,
     pub specular: SpecularForm,
-    pub power: SpecularPower,
     pub rounding: Rounding,
     pub stretched: NormalMatrix,
     pub vertices: VertexArithmetic,
@@ -43,6 +42,10 @@ pub struct Settings {
     #[doc(hidden)]
     #[serde(skip_serializing, rename = "faint")]
     pub former_faint: FormerAxis,
+    /// An axis of older scene files.
+    #[doc(hidden)]
+    #[serde(skip_serializing, rename = "power")]
+    pub former_power: FormerAxis,
 }
 
 /// A former axis in older scene files; its choices saved nothing. Any choice is accepted and
@@ -60,7 +63,8 @@ impl<'de> Deserialize<'de> for FormerAxis {
 /// The precision of lighting.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Arithmetic {
-    /// 32 bits, sixteen at once.
+    /// 32 bits, sixteen at once, with powers of whole exponents up to 64 by squaring, and others by
+    /// a polynomial.
     #[default]
     F32,
     /// 64 bits, one pixel at a time, with the power function of libm: the reference.
@@ -167,20 +171,6 @@ pub enum SpecularForm {
     Reflection,
     /// (N.H)^Ns with H half-way between L and V: Blinn's.
     HalfVector,
-}
-
-/// How the power of a highlight is computed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub enum SpecularPower {
-    /// Schlick's approximation.
-    Schlick,
-    /// Whole exponents up to 64 by squaring, others by a polynomial: sixteen at once. Older scene
-    /// files may name tables and repeated squaring, which took longer.
-    #[default]
-    #[serde(alias = "Table256", alias = "Table1024", alias = "Squaring")]
-    Polynomial,
-    /// The power function of libm, one at a time.
-    Library,
 }
 
 /// How colours become bytes.

@@ -16,6 +16,7 @@ enum Choice {
     Map1024Pcf,
     Map4096,
     Map4096Pcf,
+    Schlick,
     Weighted,
     /// Any choice that still exists, or that equals the default.
     #[default]
@@ -24,13 +25,14 @@ enum Choice {
 }
 
 /// The former choices, as they may occur in a text.
-const FORMER: [Choice; 7] = [
+const FORMER: [Choice; 8] = [
     Choice::EverySixteen,
     Choice::Map512Pcf,
     Choice::Map1024,
     Choice::Map1024Pcf,
     Choice::Map4096,
     Choice::Map4096Pcf,
+    Choice::Schlick,
     Choice::Weighted,
 ];
 
@@ -38,6 +40,7 @@ const FORMER: [Choice; 7] = [
 #[derive(Default, Deserialize)]
 #[serde(default)]
 struct Choices {
+    power: Choice,
     transparency: Choice,
     #[serde(rename = "shadow-method")]
     shadow_method: Choice,
@@ -59,8 +62,9 @@ pub(super) fn note(text: &str, findings: &mut Findings) {
     }
     let text = text.strip_prefix('\u{FEFF}').unwrap_or(text);
     let Ok(Part { settings }) = ron::from_str(text) else { return };
-    let Choices { transparency, shadow_method, interpolation } = settings;
+    let Choices { power, transparency, shadow_method, interpolation } = settings;
     for (axis, choice) in [
+        ("power", power),
         ("transparency", transparency),
         ("shadow-method", shadow_method),
         ("interpolation", interpolation),

@@ -12,9 +12,7 @@ use glam::{DMat4, DVec3};
 use self::flat::Flat;
 use super::hash::fnv1a;
 use marraztu_core::accuracy::Shot;
-use marraztu_core::accuracy::{
-    AXES, Arithmetic, Filter, LightAt, Samples, Settings, SpecularForm, SpecularPower,
-};
+use marraztu_core::accuracy::{AXES, Arithmetic, Filter, LightAt, Samples, Settings, SpecularForm};
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::base::rng::Rng;
@@ -89,8 +87,7 @@ pub fn all() -> Vec<TestPicture> {
         let plan = plan_frame(&Shot::new(scene, view, &settings, Size::new(SIDE, SIDE)));
         TestPicture { name: String::from(name), plan }
     };
-    let (arithmetic, power) = (Arithmetic::F64, SpecularPower::Library);
-    let exact = Settings { arithmetic, power, ..settings };
+    let exact = Settings { arithmetic: Arithmetic::F64, ..settings };
     let at = |light| Settings { light, ..settings };
     let parallel = View { projection: Projection::Orthographic, ..view.clone() };
     let faces = View { normals: Normals::Face, ..view.clone() };

@@ -64,7 +64,7 @@ pub const SUITE: &[SuiteScene] = &[
     SuiteScene {
         word: "highlights",
         what: "balls with exponents from 5 to 500, one of them flattened",
-        axes: &["shading", "power", "stretched", "specular"],
+        axes: &["shading", "stretched", "specular"],
         time_only: &[],
         make: scenes::highlights,
     },

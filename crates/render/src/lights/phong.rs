@@ -6,7 +6,6 @@ use super::batch::{Reflected, Sample, set};
 use super::region::Region;
 use crate::simd::power::least_cosine;
 use crate::simd::{Lanes, Number, Power, Real, Vec3};
-use marraztu_core::accuracy::SpecularPower;
 
 /// A light of a frame, in view space.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -48,11 +47,11 @@ impl PhongMaterial {
         self.specular.iter().zip(light.color).any(|(ks, color)| ks * color != 0.0)
     }
 
-    /// Sets the floor below which powers count as 0, for a variant of powers.
-    pub(crate) fn with_floor(self, floor: f64, variant: SpecularPower) -> Self {
+    /// Sets the floor below which powers count as 0.
+    pub(crate) fn with_floor(self, floor: f64) -> Self {
         // The cosine whose power is the floor, or a little less, so that rounding leaves nothing
         // out.
-        let least = least_cosine(variant, self.exponent, floor);
+        let least = least_cosine(self.exponent, floor);
         Self { floor, least_cosine: least * (1.0 - 1e-5), ..self }
     }
 }

@@ -8,7 +8,6 @@ use fearless_simd::Level;
 
 use super::*;
 use crate::simd::{BATCH, Number, Power};
-use marraztu_core::accuracy::SpecularPower;
 
 fn one(position: [f64; 3], normal: [f64; 3]) -> Batch<f64> {
     let mut batch = Batch { len: 1, ..Batch::default() };
@@ -28,7 +27,7 @@ fn material() -> PhongMaterial {
         exponent: 2.0,
         ..PhongMaterial::default()
     }
-    .with_floor(-24.0, SpecularPower::Library)
+    .with_floor(-24.0)
 }
 
 fn light() -> ViewLight {

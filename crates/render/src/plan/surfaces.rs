@@ -112,7 +112,7 @@ impl Planner<'_> {
     ) -> Shaded {
         let material = coefficients(look);
         let floor = self.floor(into, ground.region.as_ref(), &material);
-        let material = material.with_floor(floor, self.shot.settings.power);
+        let material = material.with_floor(floor);
         let mut shaded = Shaded::unlit(material);
         if ground.object.surface == Surface::Texture {
             return shaded;

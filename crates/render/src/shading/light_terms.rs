@@ -56,7 +56,7 @@ impl<T: Number> LightTerms<T> {
             if let Pipeline::Shaded(Shaded { light: Some(stages), material, .. }) = pipeline {
                 let PhongMaterial { exponent, floor, .. } = *material;
                 // The exponent depends on the material only, so its lights share the power.
-                let highlight = Power::by(plan.variants.power, exponent, floor);
+                let highlight = Power::new(exponent, floor);
                 let lights = stages.iter().map(|stage| &plan.lights[stage.light as usize]);
                 let term = |light| LightTerm::new(light, material, highlight);
                 terms.extend(lights.map(term));

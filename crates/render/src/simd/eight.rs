@@ -1,8 +1,7 @@
 //! The lanes of the most exact pictures: f64, eight at a time, with the same bits as one at a time.
 
 use fearless_simd::{
-    Select as _, Simd, SimdBase, SimdFloat as _, SimdInto as _, SimdMask as _, SimdNarrow as _,
-    SimdWiden as _, f64x8,
+    Select as _, Simd, SimdBase, SimdFloat as _, SimdInto as _, SimdMask as _, f64x8,
 };
 
 use super::gather::SLOTS;
@@ -11,7 +10,6 @@ use super::power::Power;
 use super::real::Real;
 use super::single::has_own_maximum;
 use super::vec3::Vec3;
-use marraztu_core::accuracy::SpecularPower;
 
 /// Computes in f64, eight numbers at a time, with the instruction set `S`.
 #[derive(Clone, Copy, Debug)]
@@ -38,14 +36,6 @@ impl<S: Simd> Real for f64x8<S> {
 
     #[inline(always)]
     fn power(self, power: &Power) -> Self {
-        if power.variant == Some(SpecularPower::Polynomial) {
-            // The polynomial exists in f32 only; both halves of its lanes hold these numbers.
-            let (result, zero) = (self.narrow(self).power(power).widen().0, self.lift(0.0));
-            // The same checks as for a single number, in f64.
-            let above = result.if_more(self.lift(power.least), result, zero);
-            return self.if_more(zero, above, zero);
-        }
-        // The other variants compute one number at a time.
         let mut lanes: [f64; 8] = *self;
         for lane in &mut lanes {
             *lane = lane.power(power);
@@ -276,7 +266,7 @@ mod tests {
     }
 
     #[test]
-    fn eight_numbers_have_the_bits_of_one_at_a_time_by_every_variant() {
+    fn eight_numbers_have_the_bits_of_one_at_a_time() {
         let odd = [0.0, -0.0, 1.0, -1.0, f64::NAN, f64::INFINITY, -f64::INFINITY, 1e-320, 1e300];
         let levels = crate::simd::levels();
         for (round, exponent) in (0_u32..).zip([0.5, 1.0, 27.9, 32.0, 1000.0]) {
@@ -286,16 +276,13 @@ mod tests {
             });
             let slots: &[i32; SLOTS] =
                 &std::array::from_fn(|i| ((i * 29 + 5) % SLOTS).try_into().unwrap());
-            for power in [SpecularPower::Library, SpecularPower::Polynomial, SpecularPower::Schlick]
-            {
-                let power = &Power::by(power, exponent, -24.0);
-                let one = made(|made| All { row, slots, power, made }.run(Exact));
-                for level in &levels {
-                    let eight = made(|made| {
-                        dispatch!(*level, simd => All { row, slots, power, made }.run(Eight(simd)));
-                    });
-                    assert_eq!(eight, one, "{exponent} {power:?} {level:?}");
-                }
+            let power = &Power::new(exponent, -24.0);
+            let one = made(|made| All { row, slots, power, made }.run(Exact));
+            for level in &levels {
+                let eight = made(|made| {
+                    dispatch!(*level, simd => All { row, slots, power, made }.run(Eight(simd)));
+                });
+                assert_eq!(eight, one, "{exponent} {level:?}");
             }
         }
     }

@@ -4,7 +4,7 @@
 //! * [`Lanes`]: loads numbers from memory and stores them; [`Eight`] handles eight f64 at a time,
 //!   [`Sixteen`] sixteen f32. A [`Kernel`] is work that is compiled for both.
 //! * `gather`: gathers numbers from short tables.
-//! * [`Power`]: powers of cosines by each variant that the settings choose.
+//! * [`Power`]: powers of cosines.
 
 mod doubles;
 mod eight;

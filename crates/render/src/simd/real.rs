@@ -36,7 +36,7 @@ pub trait Real:
     /// 0.
     #[must_use]
     fn power(self, power: &Power) -> Self;
-    /// The same with the exponent times `factor`, by the default of the arithmetic.
+    /// The same with the exponent times `factor`.
     #[must_use]
     fn power_times(self, power: &Power, factor: Self) -> Self;
 
@@ -73,15 +73,11 @@ impl Real for f64 {
 
     #[inline(always)]
     fn power(self, power: &Power) -> Self {
-        power::power(power, self)
+        power::power(power, self, 1.0)
     }
 
     #[inline(always)]
     fn power_times(self, power: &Power, factor: Self) -> Self {
-        if self.is_nan() || self <= 0.0 {
-            return 0.0;
-        }
-        let result = libm::pow(self, power.exponent * factor);
-        if result > power.least { result } else { 0.0 }
+        power::power(power, self, factor)
     }
 }

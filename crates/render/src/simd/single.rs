@@ -9,7 +9,7 @@ use fearless_simd::{
     i32x16,
 };
 
-use super::power::{self, Power};
+use super::power::Power;
 use super::real::Real;
 
 /// An f32 number, or sixteen, that can be split into exponent and mantissa.
@@ -268,13 +268,7 @@ impl<S: Simd> Real for f32x16<S> {
 
     #[inline(always)]
     fn power(self, power: &Power) -> Self {
-        // All sixteen have one variant, so it is matched once for them.
-        if power.is_default() {
-            return single_power(self, power);
-        }
-        let mut lanes: [f32; 16] = *self;
-        power::power_of_sixteen(power, &mut lanes);
-        Self::from_slice(self.simd, &lanes)
+        single_power(self, power)
     }
 
     #[inline(always)]

@@ -1,8 +1,8 @@
-//! The axes of light: shading, arithmetic, powers, highlights.
+//! The axes of light: shading, arithmetic, highlights.
 
 use super::sense::{has_several_samples, if_any, is_lit, is_mirroring, is_there};
 use super::{Axis, AxisKind, Choice};
-use crate::accuracy::{Arithmetic, LightAt, LightValues, SpecularForm, SpecularPower};
+use crate::accuracy::{Arithmetic, LightAt, LightValues, SpecularForm};
 
 pub(super) const SHADING: Axis = Axis {
     key: "shading",
@@ -42,32 +42,10 @@ pub(super) const ARITHMETIC: Axis = Axis {
             "Light in 32-bit numbers, sixteen at once.",
             "0.008 of a byte step, before rounding"),
         choice!("f64" "64 bits" arithmetic = Arithmetic::F64,
-            "Light in 64-bit numbers: the reference, slow.",
+            "Light in 64-bit numbers, with the power function of libm: the reference, slow.",
             "none"),
     ],
     sense: |scene, view| if_any(scene, view, is_lit, "no visible surface is lit"),
-};
-
-pub(super) const POWER: Axis = Axis {
-    key: "power",
-    label: "Specular power",
-    phrase: "specular power by {}",
-    what: "How the power of a highlight is computed",
-    kind: AxisKind::Scored,
-    choices: &[
-        choice!("schlick" "Schlick" power = SpecularPower::Schlick,
-            "Schlick's approximation x / (n - n x + x), which needs no power.",
-            "51 byte steps at Ns 76.8: the curve has another shape")
-        .slower_because("its curve falls off so slowly that more pixels have a highlight"),
-        choice!("polynomial" "Polynomial" power = SpecularPower::Polynomial,
-            "Repeated squaring for whole exponents up to 64, a polynomial for others: sixteen at \
-                once.",
-            "0.001 of a byte step"),
-        choice!("library" "libm" power = SpecularPower::Library,
-            "The power function of libm, one at a time: the reference.",
-            "none"),
-    ],
-    sense: |scene, view| if_any(scene, view, is_mirroring, "no visible surface has a highlight"),
 };
 
 pub(super) const SPECULAR: Axis = Axis {

@@ -100,7 +100,6 @@ pub struct Choice {
 pub const AXES: &[Axis] = &[
     light::SHADING,
     light::ARITHMETIC,
-    light::POWER,
     geometry::VERTICES,
     geometry::SUBPIXELS,
     geometry::COVERAGE,
@@ -194,7 +193,7 @@ impl Choice {
 
 /// A label inside a sentence: only names keep their capitals.
 pub fn uncapitalized(label: &str) -> String {
-    const NAMES: [&str; 3] = ["Gouraud", "Phong", "Schlick"];
+    const NAMES: [&str; 2] = ["Gouraud", "Phong"];
     let mut letters = label.chars();
     let (first, second) = (letters.next(), letters.next());
     let is_word = first.zip(second).is_some_and(|(a, b)| a.is_uppercase() && !b.is_uppercase());
