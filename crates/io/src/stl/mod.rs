@@ -95,7 +95,9 @@ fn is_ascii(text: &[u8], is_whole: bool) -> bool {
         return false;
     }
     let (mut has_begun, mut has_others) = (false, false);
-    for line in unmarked(text).split(|byte| matches!(byte, b'\n' | b'\r')) {
+    let is_break = |byte: &u8| matches!(byte, b'\n' | b'\r');
+    let mut lines = unmarked(text).split(is_break).peekable();
+    while let Some(line) = lines.next() {
         let mut words = line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty());
         let Some(first) = words.next() else { continue };
         let is_solid = first.eq_ignore_ascii_case(b"solid");
@@ -106,7 +108,9 @@ fn is_ascii(text: &[u8], is_whole: bool) -> bool {
         if has_begun && (is_end(first) || words.any(is_end)) {
             return true;
         }
-        has_others |= has_begun && !is_solid && !ascii::is_comment(first);
+        // The last line of a part of a text may be cut off.
+        let is_cut = !is_whole && lines.peek().is_none();
+        has_others |= has_begun && !is_solid && !is_cut && !ascii::is_comment(first);
     }
     has_begun && !has_others && !is_whole
 }
