@@ -9,7 +9,7 @@ use super::raster::layers::Layers;
 use super::raster::tile::Visibility;
 use super::raster::visibility_buffer::seen;
 use super::screen::coverage::PixelBox;
-use super::screen::sample_positions::FOUR;
+use super::screen::sample_positions::MANY;
 use super::screen::tiles::{BLOCK, BLOCK_PIXELS};
 use marraztu_core::accuracy::Transparency;
 
@@ -61,7 +61,7 @@ impl TileLayers {
         let [left, top] = self.visibility.corner(block);
         let is_layered = self.layers.touches(block);
         let samples = frame.sample_positions().count();
-        let mut tops = [[0; BLOCK_PIXELS]; FOUR];
+        let mut tops = [[0; BLOCK_PIXELS]; MANY];
         if is_layered {
             self.find_layers(level, frame, block, &mut tops);
         } else {
@@ -100,7 +100,7 @@ impl TileLayers {
             let shows = self.visibility.shows(block);
             return shows.then(|| self.visibility.entries(level, block, 0));
         }
-        let mut tops = [[0; BLOCK_PIXELS]; FOUR];
+        let mut tops = [[0; BLOCK_PIXELS]; MANY];
         self.find_layers(level, frame, block, &mut tops);
         Some(tops[0])
     }
@@ -111,7 +111,7 @@ impl TileLayers {
         level: Level,
         frame: &ScreenGeometry,
         block: usize,
-        tops: &mut [[u64; BLOCK_PIXELS]; FOUR],
+        tops: &mut [[u64; BLOCK_PIXELS]; MANY],
     ) {
         let Self { visibility, layers, words, .. } = self;
         words.iter_mut().for_each(Vec::clear);

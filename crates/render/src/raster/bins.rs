@@ -76,7 +76,7 @@ impl Bins {
         let extent = [size.width, size.height]
             .map(|pixels| i32::try_from(pixels).expect("pictures have 32-bit sizes"));
         self.hits.clear(extent, [self.columns, self.rows]);
-        self.tile_queues.clear([self.columns, self.rows], sample_positions.are_many());
+        self.tile_queues.clear([self.columns, self.rows], sample_positions.count());
         self.large.clear();
         self.large_colors.clear();
         self.unsnapped.clear();
@@ -94,7 +94,7 @@ impl Bins {
             let mut bins = self.transparent.take().unwrap_or_default();
             bins.clear(size, self.sample_positions);
             // Layers are gathered from hits and large triangles only.
-            bins.tile_queues.clear([0; 2], false);
+            bins.tile_queues.clear([0; 2], 1);
             bins
         });
     }

@@ -18,7 +18,7 @@ use crate::accel::DrawEdge;
 use crate::frame::draw::{Draw, Lines};
 use crate::screen::clip::{Screen, ScreenVertex};
 use crate::screen::coverage::Grid;
-use crate::screen::sample_positions::FOUR;
+use crate::screen::sample_positions::MANY;
 use marraztu_core::scene::{Corner, NONE, NormalSource, dvec3};
 
 /// The depth bias: lines are drawn this many steps of depth nearer than the surface below them,
@@ -45,7 +45,7 @@ impl EdgeSetup<'_> {
     /// Sets up some of the draw's edges into bins.
     pub(crate) fn run(&self, level: Level, edges: &[DrawEdge], bins: &mut Bins) {
         if bins.sample_positions.are_many() {
-            dispatch!(level, simd => self.all::<_, FOUR>(simd, edges, bins));
+            dispatch!(level, simd => self.all::<_, MANY>(simd, edges, bins));
         } else {
             dispatch!(level, simd => self.all::<_, 1>(simd, edges, bins));
         }
@@ -97,13 +97,14 @@ impl EdgeSetup<'_> {
         let short = (xb - xa).abs().simd_le(longest) & (yb - ya).abs().simd_le(longest);
         let some = short & mask32x16::from_bitmask(simd, shown);
         let number = i32x16::from_slice(simd, &numbers).bitcast();
-        for sample in 0..N {
+        let samples = bins.sample_positions.count_in::<N>();
+        for sample in 0..samples {
             // The lines move instead of the sample, which keeps the arithmetic exact.
             let [x, y] = bins.sample_positions.shift::<N>(sample);
             let seen = [[a[0] - x, a[1] - y, a[2]], [b[0] - x, b[1] - y, b[2]]];
             let (width, nearer) = (self.width, self.nearer());
-            let short = Short { some, number, width, nearer, sample };
-            lines::draw_short::<S, N>(seen[0], seen[1], &short, &mut bins.hits);
+            let short = Short { some, number, width, nearer, sample: (sample, samples) };
+            lines::draw_short(seen[0], seen[1], &short, &mut bins.hits);
         }
         // Long edges go to the tiles they cross, odd ones through clipping first.
         for lane in Bits(shown & !some.to_bitmask()) {

@@ -5,7 +5,8 @@
 
 use fearless_simd::{Bytes as _, Simd, SimdBase as _, f64x8, u32x16};
 
-use crate::screen::sample_positions::FOUR;
+/// The number of samples whose entries are moved together.
+pub(crate) const FOUR: usize = 4;
 
 /// Returns the entry of a primitive with a key of the depth format.
 #[inline(always)]

@@ -183,19 +183,19 @@ impl Hits {
         }
     }
 
-    /// Adds the first `count` of sixteen pixels, covered in one of their `N` samples, except pixels
-    /// outside the picture.
+    /// Adds the first `count` of sixteen pixels, covered in one of their samples (with the number
+    /// of samples), except pixels outside the picture.
     #[inline(always)]
-    pub(crate) fn add_first<S: Simd, const N: usize>(
+    pub(crate) fn add_first<S: Simd>(
         &mut self,
         reach: &Reach,
-        (pixels, sample): (&Pixels<S>, usize),
+        (pixels, sample): (&Pixels<S>, (usize, usize)),
         count: usize,
     ) {
         let Pixels { x, y, .. } = *pixels;
         // The common case: all hits go to one tile, and no lane has to be masked out.
         if let Reach::One(tile) = *reach {
-            let place = lanes_place::<S, N>(x & (TILE - 1), y & (TILE - 1), sample).bitcast();
+            let place = lanes_place(x & (TILE - 1), y & (TILE - 1), sample).bitcast();
             // Adding hits moves the next place, so their colours are stored before.
             if let Some(color) = pixels.color {
                 color.store_slice(self.next_colors(tile));
@@ -203,21 +203,21 @@ impl Hits {
             self.page(tile).add_first(place, pixels, count);
         } else {
             let covered = mask32x16::from_bitmask(x.simd, (1 << count) - 1);
-            self.add::<S, N>(reach, (pixels, sample), covered);
+            self.add(reach, (pixels, sample), covered);
         }
     }
 
-    /// Adds the pixels, of sixteen, that are covered in one of their `N` samples and inside the
-    /// picture.
+    /// Adds the pixels, of sixteen, that are covered in one of their samples (with the number of
+    /// samples) and inside the picture.
     #[inline(always)]
-    pub(crate) fn add<S: Simd, const N: usize>(
+    pub(crate) fn add<S: Simd>(
         &mut self,
         reach: &Reach,
-        (pixels, sample): (&Pixels<S>, usize),
+        (pixels, sample): (&Pixels<S>, (usize, usize)),
         covered: mask32x16<S>,
     ) {
         let Pixels { x, y, .. } = *pixels;
-        let place = lanes_place::<S, N>(x & (TILE - 1), y & (TILE - 1), sample).bitcast();
+        let place = lanes_place(x & (TILE - 1), y & (TILE - 1), sample).bitcast();
         let (column, row) = (x >> 6, y >> 6);
         let [width, height] = self.extent;
         match *reach {

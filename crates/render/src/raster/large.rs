@@ -127,12 +127,13 @@ impl Large {
         let columns = eight_bits(area.left / BLOCK, (area.right - 1) / BLOCK);
         let across = f64x8::from_slice(simd, &UP_TO_EIGHT).to_int::<i64x8<S>>();
         let side = i64::from(BLOCK);
-        // The largest and smallest change of the edge functions from the centre to a sample.
+        // Bounds of the change of the edge functions from the centre to a sample.
         let (mut most, mut least) = ([0; 3], [0; 3]);
         if N > 1 {
             (most, least) = ([i64::MIN; 3], [i64::MAX; 3]);
-            for sample in 0..N {
-                let gain = self.gain(sample_positions.shift::<N>(sample));
+            let [from, to] = sample_positions.reach::<N>();
+            for corner in [from, to, [from[0], to[1]], [to[0], from[1]]] {
+                let gain = self.gain(corner);
                 most = [0, 1, 2].map(|i: usize| most[i].max(gain[i]));
                 least = [0, 1, 2].map(|i: usize| least[i].min(gain[i]));
             }

@@ -27,7 +27,7 @@ use super::scan_lines::ScanLines;
 use crate::ancestors::points;
 use crate::frame::FramePlan;
 use crate::screen::coverage::{Grid, PixelBox, Triangle};
-use crate::screen::sample_positions::{FOUR, SamplePositions};
+use crate::screen::sample_positions::{MANY, SamplePositions};
 use crate::screen::tiles::{BLOCK_PIXELS, block_at, within};
 use marraztu_core::accuracy::{Coverage, DepthFormat, Transparency};
 use marraztu_core::base::math::each;
@@ -117,7 +117,7 @@ impl Layers {
         (self.depth_format, self.grid) = (plan.variants.depth, plan.variants.grid());
         (self.touched, self.depths) = (0, [f32::INFINITY, 0.0]);
         self.hits.iter_mut().for_each(Vec::clear);
-        self.hits.resize_with(FOUR * BLOCK_PIXELS, Vec::new);
+        self.hits.resize_with(MANY * BLOCK_PIXELS, Vec::new);
         self.large.clear();
         // Hits are sorted into lists per sample; larger triangles are only classified by block.
         for bins in frame.transparent_bins() {
@@ -152,7 +152,7 @@ impl Layers {
 
     fn add_large(&mut self, level: Level, triangle: &LargeTriangle) {
         let corners = each(triangle.corners, |corner| corner.at());
-        let reach = self.sample_positions.reach::<FOUR>();
+        let reach = self.sample_positions.reach::<MANY>();
         let reached = PixelBox::reached_on(self.grid, corners, reach);
         let Some(area) = reached.in_tile(self.bounds) else { return };
         let Some(edges) = Triangle::on(self.grid, corners) else { return };
@@ -175,7 +175,7 @@ impl Layers {
             // Scan lines round corners, so each sample has separate rows.
             Coverage::ScanLines => {
                 for sample in 0..self.sample_positions.count() {
-                    let [dx, dy] = in_pixels(self.sample_positions.shift::<FOUR>(sample));
+                    let [dx, dy] = in_pixels(self.sample_positions.shift::<MANY>(sample));
                     let seen = each(corners, |[x, y]| [x - dx, y - dy]);
                     let rows = ScanLines::new(seen, depths, triangle.number, self.bounds);
                     let Some(rows) = rows else { continue };
@@ -186,7 +186,7 @@ impl Layers {
                 }
             }
             Coverage::Exact | Coverage::F32Edges => {
-                let reach = self.sample_positions.reach::<FOUR>();
+                let reach = self.sample_positions.reach::<MANY>();
                 // Rounding may cover centres beyond the box, so the box is enlarged.
                 let reach = beyond::reach(plan.variants.coverage, reach);
                 let at = each(triangle.corners, |corner| corner.at());
@@ -202,7 +202,7 @@ impl Layers {
     /// Adds a triangle that may cover pixels of this area of the tile.
     fn add_blocks(&mut self, level: Level, triangle: BlockTriangle, area: PixelBox) {
         let samples = &self.sample_positions;
-        let touched = dispatch!(level, simd => triangle.blocks::<_, FOUR>(simd, area, samples));
+        let touched = dispatch!(level, simd => triangle.blocks::<_, MANY>(simd, area, samples));
         self.touched |= touched.some;
         self.large.push((Layer::Blocks(triangle), touched));
     }
@@ -221,7 +221,7 @@ impl Layers {
         // A map keeps the nearest point of each sample.
         let mut all = BTreeMap::new();
         for sample in 0..count {
-            let shift = self.sample_positions.shift::<FOUR>(sample);
+            let shift = self.sample_positions.shift::<MANY>(sample);
             let shift = [shift[0] + plan.shift[0], shift[1] + plan.shift[1]];
             let own = number - start.number;
             points::cover(plan, draw, own, (self.bounds, shift), &mut |x, y, depth| {
@@ -286,7 +286,7 @@ impl Layers {
                 self.block.add(pixel, key.of(*word));
             }
         }
-        let shift = samples.shift::<FOUR>(sample);
+        let shift = samples.shift::<MANY>(sample);
         dispatch!(level, simd => self.take_large(simd, &mut key, (block, sample, shift), opaque));
         self.block.end()
     }

@@ -267,20 +267,15 @@ pub(crate) struct Short<S: Simd> {
     pub(crate) width: i32,
     /// The depth bias, in steps of depth.
     pub(crate) nearer: u32,
-    /// The sample that the lines are drawn for.
-    pub(crate) sample: usize,
+    /// The sample that the lines are drawn for, and the number of samples per pixel.
+    pub(crate) sample: (usize, usize),
 }
 
-/// Draws sixteen lines of at most [`SHORT`] on the usual grid, for one of `N` samples per pixel.
+/// Draws sixteen lines of at most [`SHORT`] on the usual grid, for one of the samples per pixel.
 ///
 /// In the axes of [`pixels`]: v = floor((va du + dv along) / (256 du)).
 #[inline(always)]
-pub(crate) fn draw_short<S: Simd, const N: usize>(
-    a: Ends<S>,
-    b: Ends<S>,
-    lines: &Short<S>,
-    hits: &mut Hits,
-) {
+pub(crate) fn draw_short<S: Simd>(a: Ends<S>, b: Ends<S>, lines: &Short<S>, hits: &mut Hits) {
     let simd = a[0].simd;
     let ([xa, ya, da], [xb, yb, db]) = (a, b);
     // Steep lines swap their axes, so every lane steps along its major axis u.
@@ -327,7 +322,7 @@ pub(crate) fn draw_short<S: Simd, const N: usize>(
                 || u32x16::splat(x.simd, 0),
             );
             let pixels = Pixels { x, y, depth, number: lines.number, color };
-            hits.add::<S, N>(&reach, (&pixels, lines.sample), covered);
+            hits.add(&reach, (&pixels, lines.sample), covered);
         }
     }
 }
@@ -439,8 +434,8 @@ mod tests {
             let [a, b] = ends.map(|ends| end(ends).map(|x| i32x16::splat(simd, x)));
             let depth = i32x16::splat(simd, 0.5_f32.to_bits().cast_signed());
             let some = mask32x16::from_bitmask(simd, 1 << 5);
-            let short = Short { some, number: u32x16::splat(simd, 0), width, nearer: 0, sample: 0 };
-            draw_short::<_, 1>([a[0], a[1], depth], [b[0], b[1], depth], &short, &mut hits);
+            let short = Short { some, number: u32x16::splat(simd, 0), width, nearer: 0, sample: (0, 1) };
+            draw_short([a[0], a[1], depth], [b[0], b[1], depth], &short, &mut hits);
         });
         let mut pixels = Vec::new();
         for tile in 0..4 {

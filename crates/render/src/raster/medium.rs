@@ -122,14 +122,14 @@ impl<S: Simd> Medium<S> {
         let (across, below) = (i32x16::from_slice(simd, &ACROSS), i32x16::from_slice(simd, &DOWN));
         let mut gains = [i32x16::splat(simd, 0); 3];
         let (mut most, mut least) = ([0; 3], [0; 3]);
-        // The largest and smallest change of each edge function within a block, over all samples.
+        let [from, to] = sample_positions.reach::<N>();
+        // Bounds of the change of each edge function within a block, over all samples.
         for i in 0..3 {
             if N > 1 {
-                (most[i], least[i]) = (i32::MIN, i32::MAX);
-                for sample in 0..N {
-                    let gain = self.gain(i, sample_positions.shift::<N>(sample));
-                    (most[i], least[i]) = (most[i].max(gain), least[i].min(gain));
-                }
+                let (right, down) = (self.right[i], self.down[i]);
+                most[i] = (right * from[0]).max(right * to[0]) + (down * from[1]).max(down * to[1]);
+                least[i] =
+                    (right * from[0]).min(right * to[0]) + (down * from[1]).min(down * to[1]);
             }
             let (x, y) = (7 * SUBPIXELS * self.right[i], 7 * SUBPIXELS * self.down[i]);
             most[i] += x.max(0) + y.max(0);

@@ -16,14 +16,13 @@ use super::hits::PACK;
 use super::queue::{Pack, SMALL};
 use super::rule::Rule;
 use super::small;
-use super::tile_queues::FIRST_SIZE;
 use super::vertices::{fetch, fetch_corners};
 use crate::accel::{DrawOrder, DrawTriangle};
 use crate::frame::FramePlan;
 use crate::frame::draw::{Back, Draw, Pipeline, Shaded};
 use crate::screen::clip::{Screen, ScreenVertex};
 use crate::screen::coverage::{PixelBox, doubled_area};
-use crate::screen::sample_positions::FOUR;
+use crate::screen::sample_positions::MANY;
 use crate::texture::opacity::Holes;
 use marraztu_core::accuracy::Coverage;
 use marraztu_core::base::math::each;
@@ -105,7 +104,7 @@ impl<'a> Setup<'a> {
         into: (&mut Bins, &mut Brush<'_>),
     ) {
         if into.0.sample_positions.are_many() {
-            dispatch!(level, simd => self.all::<_, R, FOUR>(simd, triangles, into));
+            dispatch!(level, simd => self.all::<_, R, MANY>(simd, triangles, into));
         } else {
             dispatch!(level, simd => self.all::<_, R, 1>(simd, triangles, into));
         }
@@ -247,7 +246,7 @@ impl<'a> Setup<'a> {
         let [left, top, right, bottom] = boxes;
         let side = (right - left).max(bottom - top);
         // With several samples, triangles of more than a few pixels wait for their tiles.
-        let in_tiles = N > 1 && R::IN_TILES && bins.tile_queues.used;
+        let in_tiles = N > 1 && R::IN_TILES;
         let tiles = bins.tile_queues.boxes(boxes);
         let mut above = 0;
         let queues = if self.has_small::<R>() { R::QUEUES } else { 0 };
@@ -260,8 +259,8 @@ impl<'a> Setup<'a> {
                 continue;
             }
             bins.drawn += count;
-            if in_tiles && queue >= FIRST_SIZE {
-                bins.tile_queues.add(queue - FIRST_SIZE, (pack, &tiles), some);
+            if in_tiles && queue >= bins.tile_queues.first_size {
+                bins.tile_queues.add(queue, (pack, &tiles), some);
                 continue;
             }
             let vertices = bins.hits.colored.then_some(vertices);
@@ -436,7 +435,7 @@ pub(crate) fn finish<R: Rule>(level: Level, bins: &mut Bins, brush: &mut Brush<'
     dispatch!(level, simd => {
         for queue in 0..R::QUEUES {
             match many {
-                true => small::draw_queue::<_, R, FOUR>(simd, queue, bins, brush),
+                true => small::draw_queue::<_, R, MANY>(simd, queue, bins, brush),
                 false => small::draw_queue::<_, R, 1>(simd, queue, bins, brush),
             }
         }

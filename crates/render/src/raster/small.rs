@@ -23,7 +23,7 @@ use super::queue::{Pack, SMALL};
 use super::rule::Rule;
 use super::small_edges::Edges;
 use crate::screen::coverage::PixelBox;
-use crate::screen::sample_positions::SamplePositions;
+use crate::screen::sample_positions::{MANY, SamplePositions};
 use crate::simd::gather::permute;
 use crate::simd::{Real, UP_TO_SIXTEEN};
 
@@ -92,12 +92,12 @@ fn draw<S: Simd, E: Edges<S>, const N: usize, const COLORED: bool>(
     // The tiles are found once for all sixteen triangles.
     let reach = bins.hits.reach(lanes.bounds());
     let Bins { hits, covered, queues, .. } = bins;
-    let shifts = lanes.edges.shifts::<N>(&sample_positions);
+    let samples = sample_positions.count_in::<N>();
     // One sample after the other: list the covered pixels, then compute depths and colours.
-    for (sample, shift) in shifts.into_iter().enumerate() {
+    for sample in 0..samples {
         // A single sample lies at the centre, which saves adding its offset.
-        let shift = (N > 1).then_some([shift]);
-        lanes.scan(shift.as_ref(), covered);
+        let shift = (N > 1).then(|| lanes.edges.shift(sample_positions.shift::<N>(sample)));
+        lanes.scan(shift.as_slice(), covered);
         let mut mix = None;
         // Colours are only looked up if some pixel is covered.
         if COLORED && covered.count > 0 {
@@ -111,11 +111,11 @@ fn draw<S: Simd, E: Edges<S>, const N: usize, const COLORED: bool>(
             mix = brush.mix(per_area, &triangles);
         }
         lanes.each_pixel(
-            shift.as_ref(),
             covered,
             #[inline(always)]
             |own, count| {
-                let CoveredPixels { x, y, number, depth: [depth], .. } = *own;
+                let CoveredPixels { x, y, number, .. } = *own;
+                let depth = lanes.depths(own, shift.as_ref());
                 let color = match &mix {
                     _ if !COLORED => None,
                     Some(mix) if E::COLORED => {
@@ -127,29 +127,54 @@ fn draw<S: Simd, E: Edges<S>, const N: usize, const COLORED: bool>(
                     _ => Some(u32x16::splat(simd, 0)),
                 };
                 let pixels = Pixels { x, y, depth: depth.bitcast(), number, color };
-                hits.add_first::<S, N>(&reach, (&pixels, sample), count);
+                hits.add_first(&reach, (&pixels, (sample, samples)), count);
             },
         );
     }
 }
 
-/// Calls `take` with the pixels of a box covered by sixteen triangles in any of `N` samples,
-/// sixteen at a time, and their number.
-#[inline(always)]
-pub(super) fn each_in<S: Simd, E: Edges<S>, const N: usize>(
-    (pack, within): (&Pack<S>, PixelBox),
-    sample_positions: &SamplePositions,
-    covered: &mut Covered,
-    take: impl FnMut(&CoveredPixels<S, N>, usize),
-) {
-    let lanes = Lanes::<S, E>::new(pack[0].simd, pack, sample_positions.reach::<N>());
-    let shifts = lanes.edges.shifts::<N>(sample_positions);
-    lanes.scan(Some(&shifts), covered);
-    // Triangles in several tiles have pixels outside this one.
-    if lanes.bounds().intersection(within) != lanes.bounds() {
-        lanes.keep(within, covered);
+/// Sixteen small triangles with several samples per pixel, set up for rasterisation.
+pub(super) struct SampledLanes<S: Simd, E: Edges<S>> {
+    lanes: Lanes<S, E>,
+    shifts: [E::Shift; MANY],
+    samples: usize,
+}
+
+impl<S: Simd, E: Edges<S>> SampledLanes<S, E> {
+    #[inline(always)]
+    pub(super) fn new(pack: &Pack<S>, sample_positions: &SamplePositions) -> Self {
+        let lanes = Lanes::<S, E>::new(pack[0].simd, pack, sample_positions.reach::<MANY>());
+        let samples = sample_positions.count().min(MANY);
+        let mut shifts = [lanes.edges.shift([0; 2]); MANY];
+        for (sample, shift) in shifts[..samples].iter_mut().enumerate() {
+            *shift = lanes.edges.shift(sample_positions.shift::<MANY>(sample));
+        }
+        Self { lanes, shifts, samples }
     }
-    lanes.each_pixel(Some(&shifts), covered, take);
+
+    /// Calls `take` with the pixels of a box covered in any sample, sixteen at a time, and their
+    /// number.
+    #[inline(always)]
+    pub(super) fn each_in(
+        &self,
+        within: PixelBox,
+        covered: &mut Covered,
+        take: impl FnMut(&CoveredPixels<S>, usize),
+    ) {
+        let Self { lanes, shifts, samples } = self;
+        lanes.scan(&shifts[..*samples], covered);
+        // Triangles in several tiles have pixels outside this one.
+        if lanes.bounds().intersection(within) != lanes.bounds() {
+            lanes.keep(within, covered);
+        }
+        lanes.each_pixel(covered, take);
+    }
+
+    /// Returns the depths of pixels in one of their samples.
+    #[inline(always)]
+    pub(super) fn depths(&self, of: &CoveredPixels<S>, sample: usize) -> f32x16<S> {
+        self.lanes.depths(of, Some(&self.shifts[sample % MANY]))
+    }
 }
 
 /// Returns 1 / the doubled areas of sixteen triangles, and a mask of the clockwise ones on the
@@ -208,11 +233,11 @@ impl<S: Simd, E: Edges<S>> Lanes<S, E> {
     /// Lists the pixels that the triangles cover in any of the samples with these offsets, or at
     /// their centres without offsets.
     #[inline(always)]
-    fn scan<const N: usize>(&self, shifts: Option<&[E::Shift; N]>, covered: &mut Covered) {
+    fn scan(&self, shifts: &[E::Shift], covered: &mut Covered) {
         let columns = (self.right - self.left).reduce_max();
         let rows = (self.bottom - self.top).reduce_max();
         let mut row = self.edges.first();
-        if let Some([shift]) = shifts.map(<[_; N]>::as_slice) {
+        if let [shift] = shifts {
             row = self.edges.moved(row, *shift);
         }
         let mut count = 0;
@@ -222,8 +247,8 @@ impl<S: Simd, E: Edges<S>> Lanes<S, E> {
             let (mut at, mut pixels) = (row, row_pixels);
             for _ in 0..columns {
                 let (some, listed) = match shifts {
-                    Some(shifts) if N > 1 => self.covered_samples(shifts, at, pixels),
-                    _ => (self.edges.covered(at), pixels),
+                    [] | [_] => (self.edges.covered(at), pixels),
+                    _ => self.covered_samples(shifts, at, pixels),
                 };
                 // The list has room for every pixel; the remainder only saves a bounds check.
                 let to = count % MOST;
@@ -242,19 +267,21 @@ impl<S: Simd, E: Edges<S>> Lanes<S, E> {
     /// Returns the triangles that cover any sample of a pixel, and the pixel's list entry with a
     /// bit for each covered sample.
     #[inline(always)]
-    fn covered_samples<const N: usize>(
+    fn covered_samples(
         &self,
-        shifts: &[E::Shift; N],
+        shifts: &[E::Shift],
         at: E::At,
         pixels: i32x16<S>,
     ) -> (mask32x16<S>, i32x16<S>) {
-        let (mut any, mut listed) = (mask32x16::splat(pixels.simd, false), pixels);
-        for (bit, shift) in (SAMPLES..).zip(shifts) {
+        let nothing = i32x16::splat(pixels.simd, 0);
+        let mut samples = nothing;
+        let mut bit = i32x16::splat(pixels.simd, 1 << SAMPLES);
+        for shift in shifts {
             let some = self.edges.covered(self.edges.moved(at, *shift));
-            listed = some.select(listed | (1 << bit), listed);
-            any |= some;
+            samples |= some.select(bit, nothing);
+            bit += bit;
         }
-        (any, listed)
+        (samples.simd_gt(nothing), samples | pixels)
     }
 
     /// Removes the listed pixels outside a box.
@@ -286,12 +313,7 @@ impl<S: Simd, E: Edges<S>> Lanes<S, E> {
 
     /// Calls `take` with the pixels of a list, sixteen at a time, and their number.
     #[inline(always)]
-    fn each_pixel<const N: usize>(
-        &self,
-        shifts: Option<&[E::Shift; N]>,
-        covered: &Covered,
-        mut take: impl FnMut(&CoveredPixels<S, N>, usize),
-    ) {
+    fn each_pixel(&self, covered: &Covered, mut take: impl FnMut(&CoveredPixels<S>, usize)) {
         for at in (0..covered.count).step_by(PACK) {
             let pixels = i32x16::from_slice(self.left.simd, &covered.pixels[at..at + PACK]);
             // A lane is now a pixel of the list; the numbers of its triangle are permuted into it.
@@ -299,25 +321,27 @@ impl<S: Simd, E: Edges<S>> Lanes<S, E> {
             let lanes = pixels & 15;
             let low = permute(self.low.bitcast(), lanes).bitcast::<f32x16<S>>();
             let high = permute(self.high.bitcast(), lanes).bitcast::<f32x16<S>>();
-            let mut depth = [low; N];
-            for (sample, depth) in depth.iter_mut().enumerate() {
-                let shift = shifts.map(|shifts| &shifts[sample]);
-                let linear = self.edges.depths((lanes, by, shift));
-                // Clamped to the depths of the corners.
-                let linear = linear.simd_gt(low).select(linear, low);
-                *depth = linear.simd_lt(high).select(linear, high);
-            }
             let [x, y] = self.place(pixels);
             let number = permute(self.number.bitcast(), lanes).bitcast();
-            let own = CoveredPixels { lanes, by, x, y, number, depth, samples: pixels >> SAMPLES };
+            let samples = pixels >> SAMPLES;
+            let own = CoveredPixels { lanes, by, x, y, number, low, high, samples };
             take(&own, (covered.count - at).min(PACK));
         }
     }
+
+    /// Returns the depths of pixels at a sample with this offset, or at their centres.
+    #[inline(always)]
+    fn depths(&self, of: &CoveredPixels<S>, shift: Option<&E::Shift>) -> f32x16<S> {
+        let linear = self.edges.depths((of.lanes, of.by, shift));
+        // Clamped to the depths of the corners.
+        let linear = linear.simd_gt(of.low).select(linear, of.low);
+        linear.simd_lt(of.high).select(linear, of.high)
+    }
 }
 
-/// Sixteen pixels covered by some of sixteen triangles in any of `N` samples.
+/// Sixteen pixels covered by some of sixteen triangles in any sample.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct CoveredPixels<S: Simd, const N: usize> {
+pub(super) struct CoveredPixels<S: Simd> {
     /// The lanes of the pixels' triangles.
     lanes: i32x16<S>,
     /// The distances from the first pixels of the boxes.
@@ -326,13 +350,14 @@ pub(super) struct CoveredPixels<S: Simd, const N: usize> {
     pub(super) y: i32x16<S>,
     /// The numbers of the triangles.
     pub(super) number: u32x16<S>,
-    /// The depths in each sample.
-    pub(super) depth: [f32x16<S>; N],
+    /// The smallest and largest depths of the corners.
+    low: f32x16<S>,
+    high: f32x16<S>,
     /// The covered samples, a bit for each of several.
     samples: i32x16<S>,
 }
 
-impl<S: Simd, const N: usize> CoveredPixels<S, N> {
+impl<S: Simd> CoveredPixels<S> {
     /// Returns which of the first `count` pixels are covered in one of several samples.
     #[inline(always)]
     pub(super) fn covered(&self, sample: usize, count: usize) -> mask32x16<S> {

@@ -3,7 +3,6 @@
 use fearless_simd::{Simd, SimdBase as _, f32x16, i32x16, mask32x16};
 
 use crate::screen::coverage::Grid;
-use crate::screen::sample_positions::SamplePositions;
 use crate::simd::gather::of_lanes;
 
 pub(crate) use self::floats::FloatEdges;
@@ -67,8 +66,8 @@ pub(crate) trait Edges<S: Simd>: Copy {
     fn first(&self) -> Self::At;
     /// Steps one pixel to the right along axis 0, or down along axis 1.
     fn step(&self, at: Self::At, axis: usize) -> Self::At;
-    /// Returns the changes by the offsets of samples.
-    fn shifts<const N: usize>(&self, sample_positions: &SamplePositions) -> [Self::Shift; N];
+    /// Returns the change of the values by the offset of a sample, in subpixels.
+    fn shift(&self, by: [i32; 2]) -> Self::Shift;
     /// Moves the values to a sample.
     fn moved(&self, at: Self::At, shift: Self::Shift) -> Self::At;
     /// Returns which triangles cover the point with these values.

@@ -16,7 +16,7 @@
 //! triangle is noted, and no depths are computed until another primitive comes near. Bounds of each
 //! block's depths skip hidden triangles early, as in hierarchical Z.
 //!
-//! With four samples per pixel, a block has four planes of entries, one per sample. A primitive
+//! With several samples per pixel, a block has a plane of entries for each. A primitive
 //! covers a sample if it covers the centre of the pixel after the primitive is moved by the
 //! sample's offset.
 
@@ -34,10 +34,10 @@ use super::hit_colors::Conversion;
 use super::large::BlockTriangle;
 use super::lines;
 use super::paint::Paint;
-use super::visibility_buffer::{Planes, depths_of};
+use super::visibility_buffer::{Plane, depths_of};
 use crate::frame::FramePlan;
 use crate::screen::coverage::{Grid, PixelBox};
-use crate::screen::sample_positions::{FOUR, SamplePositions};
+use crate::screen::sample_positions::{MANY, SamplePositions};
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, BLOCKS, PIXELS, block_at, within};
 use marraztu_core::accuracy::{Coverage, DepthFormat};
 
@@ -46,7 +46,7 @@ use marraztu_core::accuracy::{Coverage, DepthFormat};
 #[derive(Debug)]
 pub(crate) struct Visibility {
     buffer: Box<Buffer>,
-    /// The means to draw small triangles with four samples per pixel, created when first needed.
+    /// The means to draw small triangles with several samples per pixel, created when first needed.
     small: Option<Box<SmallTriangles>>,
     /// The samples of the pass.
     sample_positions: SamplePositions,
@@ -79,12 +79,12 @@ pub(crate) struct Visibility {
 /// twice: 4% of a frame of 70,000 triangles, flat, at 1920 x 1080.
 #[derive(Debug)]
 #[repr(align(64))]
-struct Buffer([u64; FOUR * PIXELS]);
+struct Buffer([u64; MANY * PIXELS]);
 
 impl Default for Visibility {
     fn default() -> Self {
         Self {
-            buffer: Box::new(Buffer([0; FOUR * PIXELS])),
+            buffer: Box::new(Buffer([0; MANY * PIXELS])),
             small: None,
             sample_positions: SamplePositions::default(),
             written: 0,
@@ -117,12 +117,12 @@ impl Visibility {
         self.background = u32::from_le_bytes(plan.background.opaque());
         (self.depth_format, self.grid) = (plan.variants.depth, plan.variants.grid());
         match self.sample_positions.are_many() {
-            true => self.draw_in::<FOUR>(level, plan, frame, (tile, conversion)),
+            true => self.draw_in::<MANY>(level, plan, frame, (tile, conversion)),
             false => self.draw_in::<1>(level, plan, frame, (tile, conversion)),
         }
     }
 
-    /// Draws with `N` samples per pixel.
+    /// Draws with up to `N` samples per pixel.
     fn draw_in<const N: usize>(
         &mut self,
         level: Level,
@@ -137,7 +137,7 @@ impl Visibility {
             }
         }
         // With one sample, small triangles are hits already.
-        if N == FOUR {
+        if N > 1 {
             dispatch!(level, simd => self.draw_small(simd, frame.bins(), tile));
         }
         // Alpha-tested triangles come after large opaque ones, because hidden pixels are not
@@ -201,15 +201,10 @@ impl Visibility {
         &self.buffer.0.as_chunks().0[block]
     }
 
-    /// Returns the entries of a block that shows something, with four samples per pixel.
-    pub(crate) fn planes(&self, block: usize) -> &Planes {
-        &self.buffer.0.as_chunks().0.as_chunks().0[block]
-    }
-
-    /// All entries of a block that shows something.
-    fn block_samples(&self, block: usize) -> &[u64] {
-        let count = BLOCK_PIXELS * self.sample_positions.count();
-        &self.buffer.0[block * count..][..count]
+    /// Returns the entries of a block that shows something, sample by sample.
+    pub(crate) fn planes(&self, block: usize) -> &[Plane] {
+        let count = self.sample_positions.count();
+        &self.buffer.0.as_chunks().0[block * count..][..count]
     }
 
     /// Returns the farthest and nearest depth of all visible triangles. `None` if no triangle is
@@ -221,7 +216,7 @@ impl Visibility {
             let [own_low, own_high] = if self.whole(block).is_some() {
                 [self.farthest[block], self.nearest[block]]
             } else {
-                dispatch!(level, simd => depths_of(simd, self.block_samples(block)))
+                dispatch!(level, simd => depths_of(simd, self.planes(block).as_flattened()))
             };
             (low, high) = (low.min(own_low), high.max(own_high));
         }
@@ -235,19 +230,18 @@ impl Visibility {
     }
 
     /// Returns the entries of the samples of a pixel of the tile, and their number.
-    pub(crate) fn samples(&mut self, level: Level, x: i32, y: i32) -> ([u64; FOUR], usize) {
-        let count = self.sample_positions.count();
+    pub(crate) fn samples(&mut self, level: Level, x: i32, y: i32) -> ([u64; MANY], usize) {
         let (x, y) = (x - self.bounds.left, y - self.bounds.top);
         let block = block_at(x, y);
-        let mut samples = [0; FOUR];
+        let mut samples = [0; MANY];
         if self.shows(block) {
             // A fully covered block gets its entries only now.
             self.write_samples(level, block);
-            for (sample, word) in samples[..count].iter_mut().enumerate() {
-                *word = self.block_samples(block)[sample * BLOCK_PIXELS + within(x, y)];
+            for (word, plane) in samples.iter_mut().zip(self.planes(block)) {
+                *word = plane[within(x, y)];
             }
         }
-        (samples, count)
+        (samples, self.sample_positions.count())
     }
 
     /// Returns the entries of a block for one of its samples; 0 in pixels without an opaque
@@ -262,18 +256,18 @@ impl Visibility {
             return [0; BLOCK_PIXELS];
         }
         self.write_samples(level, block);
-        self.block_samples(block).as_chunks().0[sample]
+        self.planes(block)[sample]
     }
 
     /// Makes the entries of a block valid for the samples of the pass.
     fn write_samples(&mut self, level: Level, block: usize) {
         match self.sample_positions.are_many() {
-            true => self.write::<FOUR>(level, block),
+            true => self.write::<MANY>(level, block),
             false => self.write::<1>(level, block),
         }
     }
 
-    /// Makes the entries of a block valid for `N` samples per pixel, before something is drawn into
+    /// Makes the entries of a block valid for up to `N` samples per pixel, before something is drawn into
     /// it. Drops the block's colours.
     #[inline(always)]
     fn write<const N: usize>(&mut self, level: Level, block: usize) {
@@ -281,7 +275,7 @@ impl Visibility {
         self.colored &= !bit;
         if self.written & bit == 0 {
             self.written |= bit;
-            for sample in 0..N {
+            for sample in 0..self.sample_positions.count_in::<N>() {
                 self.plane::<N>(block, sample).fill(0);
             }
             // The triangle that was only noted comes first.
@@ -299,10 +293,11 @@ impl Visibility {
         self.draw_planes::<N>(level, &triangle, block, true);
     }
 
-    /// Returns the entries of a block for one of `N` samples.
+    /// Returns the entries of a block for one of up to `N` samples.
     #[inline(always)]
-    fn plane<const N: usize>(&mut self, block: usize, sample: usize) -> &mut [u64; BLOCK_PIXELS] {
-        &mut self.buffer.0.as_chunks_mut().0[block * N + sample]
+    fn plane<const N: usize>(&mut self, block: usize, sample: usize) -> &mut Plane {
+        let count = self.sample_positions.count_in::<N>();
+        &mut self.buffer.0.as_chunks_mut().0[block * count + sample]
     }
 
     /// Draws a triangle into a block that it covers fully or partly.
@@ -315,7 +310,7 @@ impl Visibility {
         whole: bool,
     ) {
         let (sample_positions, format) = (self.sample_positions, self.depth_format);
-        dispatch!(level, simd => for sample in 0..N {
+        dispatch!(level, simd => for sample in 0..sample_positions.count_in::<N>() {
             let shift = sample_positions.shift::<N>(sample);
             let plane = self.plane::<N>(block, sample);
             with_format!(format, D => {
@@ -350,7 +345,7 @@ impl Visibility {
     fn draw_lines<const N: usize>(&mut self, level: Level, bins: &Bins, width: i32, tile: usize) {
         with_format!(self.depth_format, D => for &place in &bins.tiles[tile].lines {
             let format = D::of(self.depth_format);
-            for sample in 0..N {
+            for sample in 0..self.sample_positions.count_in::<N>() {
                 // The line moves instead of the sample, which keeps the arithmetic exact.
                 let line =
                     bins.lines[place as usize].seen_from(self.sample_positions.shift::<N>(sample));

@@ -12,12 +12,19 @@ use super::queue::{Pack, ROWS, SMALL};
 use crate::screen::coverage::PixelBox;
 use crate::simd::Bits;
 
-/// The first size of bounding boxes in [`SMALL`] that waits for tiles. With the next smaller size,
-/// a model of a million triangles takes 1.1 times as long, and no model gets faster.
-pub(crate) const FIRST_SIZE: usize = 3;
+/// The number of sizes of bounding boxes.
+pub(super) const SIZES: usize = SMALL.len();
 
-/// The number of sizes.
-pub(super) const SIZES: usize = SMALL.len() - FIRST_SIZE;
+/// Returns the first size of bounding boxes in [`SMALL`] that waits for tiles. With four samples
+/// and the next smaller size, a model of a million triangles takes 1.1 times as long, and no model
+/// gets faster. With sixteen samples, even the hits of one pixel take more memory than a triangle.
+const fn first_size(samples: usize) -> usize {
+    match samples {
+        1 => SIZES,
+        4 => 3,
+        _ => 0,
+    }
+}
 
 /// The number of triangles in a page.
 const PAGE: usize = 64;
@@ -50,8 +57,8 @@ pub(crate) type TileBoxes<S> = [i32x16<S>; 4];
 /// The waiting triangles set up by one thread.
 #[derive(Debug)]
 pub(crate) struct TileQueues {
-    /// Whether triangles wait for tiles.
-    pub(crate) used: bool,
+    /// The first size of triangles that wait for tiles.
+    pub(crate) first_size: usize,
     /// The columns and rows of tiles.
     tiles: [i32; 2],
     /// The last page of each tile and size.
@@ -64,16 +71,16 @@ pub(crate) struct TileQueues {
 impl Default for TileQueues {
     fn default() -> Self {
         let pages = vec![Page::new(PAGE)];
-        Self { used: false, tiles: [0; 2], last: Vec::new(), pages, handed_out: 1 }
+        Self { first_size: SIZES, tiles: [0; 2], last: Vec::new(), pages, handed_out: 1 }
     }
 }
 
 impl TileQueues {
-    /// Removes all triangles, for a picture of this many columns and rows of tiles. `used` tells
-    /// whether triangles will be added.
-    pub(crate) fn clear(&mut self, tiles: [i32; 2], used: bool) {
-        (self.tiles, self.used, self.handed_out) = (tiles, used, 1);
-        let count = if used { tiles[0] * tiles[1] } else { 0 };
+    /// Removes all triangles, for a picture of this many columns and rows of tiles and this many
+    /// samples per pixel.
+    pub(crate) fn clear(&mut self, tiles: [i32; 2], samples: usize) {
+        (self.tiles, self.first_size, self.handed_out) = (tiles, first_size(samples), 1);
+        let count = if self.first_size < SIZES { tiles[0] * tiles[1] } else { 0 };
         self.last.clear();
         self.last.resize(usize::try_from(count).expect("not negative"), [FULL; SIZES]);
     }
@@ -257,7 +264,7 @@ mod tests {
         let mut queues = TileQueues::default();
         for round in 0..30 {
             let [columns, rows] = [1 + random(5), 1 + random(5)];
-            queues.clear([columns, rows], true);
+            queues.clear([columns, rows], 16);
             let mut want = vec![vec![Vec::new(); SIZES]; (columns * rows).cast_unsigned() as usize];
             for first in (0..400).step_by(PACK) {
                 // Close together, or spread over the picture and beyond.

@@ -7,7 +7,6 @@ use fearless_simd::{
 
 use super::depth_format::Format;
 use super::lines::LineNumber;
-use crate::screen::sample_positions::FOUR;
 use crate::screen::tiles::BLOCK_PIXELS;
 
 /// The primitive visible at a sample.
@@ -97,8 +96,8 @@ fn entries<S: Simd>(
     (upper.bitcast(), lower.bitcast())
 }
 
-/// The entries of a block for each of four samples.
-pub(crate) type Planes = [[u64; BLOCK_PIXELS]; FOUR];
+/// The entries of a block for one sample.
+pub(crate) type Plane = [u64; BLOCK_PIXELS];
 
 /// Returns the smallest and largest key of the triangles in the entries of whole blocks.
 #[inline(always)]

@@ -2,43 +2,52 @@
 //!
 //! A sample is the pixel's centre moved by whole subpixels. It shows what the centre would show if
 //! all corners were moved the opposite way, so everything that is exact with one sample is exact
-//! with several. Samples are drawn four at a time, each group of four around the centre. More
-//! samples take several passes, and the MSAA resolve adds their colours.
+//! with several. Up to sixteen samples are drawn in one pass, each group of four around the
+//! centre. More samples take several passes, and the MSAA resolve adds their colours.
 //!
 //! Four and sixteen samples are at Vulkan's "Standard sample locations", multiples of 1/16 pixel;
 //! sixty-four and 256 are on a grid of 8 x 8 and 16 x 16.
 
 use marraztu_core::accuracy::Samples;
 
-/// The number of samples in a pass, unless the centre is the only sample.
-pub(crate) const FOUR: usize = 4;
+/// The largest number of samples in a pass. Kernels are compiled for one sample, at the centre, and
+/// for several: up to this many.
+pub(crate) const MANY: usize = 16;
 
-/// The share of a fragment that all samples of a pass show.
-pub(crate) const ALL: i32 = 4;
+/// The number of samples in a group around the centre.
+const FOUR: usize = 4;
 
 /// The positions of one pass's samples in every pixel.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct SamplePositions {
     /// Offsets from the centre, in subpixels; all 0 if the centre is the only sample.
-    shifts: [[i32; 2]; FOUR],
+    shifts: [[i32; 2]; MANY],
+    count: usize,
     /// The smallest and largest offset on each axis.
     least: [i32; 2],
     most: [i32; 2],
-    many: bool,
+}
+
+impl Default for SamplePositions {
+    fn default() -> Self {
+        Self::MIDDLE
+    }
 }
 
 impl SamplePositions {
     /// A single sample at the centre.
-    const MIDDLE: Self = Self { shifts: [[0; 2]; FOUR], least: [0; 2], most: [0; 2], many: false };
+    const MIDDLE: Self = Self { shifts: [[0; 2]; MANY], count: 1, least: [0; 2], most: [0; 2] };
 
-    /// Creates four samples, given in `parts` of a pixel from the upper left corner.
-    const fn new(parts: i32, places: [[i32; 2]; FOUR]) -> Self {
-        let mut positions = Self { least: [128; 2], most: [-128; 2], many: true, ..Self::MIDDLE };
+    /// Creates a pass of groups of four samples, given in `parts` of a pixel from the upper left
+    /// corner.
+    const fn new(parts: i32, groups: &[[[i32; 2]; FOUR]]) -> Self {
+        let count = FOUR * groups.len();
+        let mut positions = Self { least: [128; 2], most: [-128; 2], count, ..Self::MIDDLE };
         let mut i = 0;
-        while i < 2 * FOUR {
+        while i < 2 * count {
             let (sample, axis) = (i / 2, i % 2);
             // Positions count from the upper left corner; the centre is at 128 subpixels.
-            let shift = places[sample][axis] * (256 / parts) - 128;
+            let shift = groups[sample / FOUR][sample % FOUR][axis] * (256 / parts) - 128;
             positions.shifts[sample][axis] = shift;
             if shift < positions.least[axis] {
                 positions.least[axis] = shift;
@@ -51,20 +60,33 @@ impl SamplePositions {
         positions
     }
 
-    /// Returns the number of samples: [`FOUR`], or one.
+    /// Returns the number of samples.
     pub(crate) const fn count(&self) -> usize {
-        if self.many { FOUR } else { 1 }
+        self.count
     }
 
-    /// Returns whether the pass has four samples.
+    /// Returns the share of a fragment that all samples of the pass show.
+    pub(crate) const fn shares(&self) -> i32 {
+        self.count as i32
+    }
+
+    /// Returns whether the pass has several samples.
     pub(crate) const fn are_many(&self) -> bool {
-        self.many
+        self.count > 1
     }
 
-    /// Returns the offset of sample `i` of `N` from the centre, in subpixels.
+    /// Returns the number of samples, for a kernel of up to `N` samples.
+    #[inline(always)]
+    pub(crate) const fn count_in<const N: usize>(&self) -> usize {
+        // A constant for one sample.
+        if N == 1 { 1 } else { self.count }
+    }
+
+    /// Returns the offset of sample `i` from the centre, in subpixels, in a kernel of up to `N`
+    /// samples.
     #[inline(always)]
     pub(crate) const fn shift<const N: usize>(&self, i: usize) -> [i32; 2] {
-        if N == 1 { [0; 2] } else { self.shifts[i % FOUR] }
+        if N == 1 { [0; 2] } else { self.shifts[i % MANY] }
     }
 
     /// Returns the smallest and largest offset on each axis.
@@ -93,31 +115,39 @@ pub(crate) fn shifts(samples: Samples) -> impl ExactSizeIterator<Item = [i32; 2]
 }
 
 const QUARTERS: [SamplePositions; 1] =
-    [SamplePositions::new(16, [[6, 2], [14, 6], [2, 10], [10, 14]])];
+    [SamplePositions::new(16, &[[[6, 2], [14, 6], [2, 10], [10, 14]]])];
 
 /// Vulkan's sixteen positions, in groups of four around the centre, the nearest first.
-const SIXTEEN: [SamplePositions; 4] = [
-    SamplePositions::new(16, [[9, 9], [7, 5], [5, 10], [12, 7]]),
-    SamplePositions::new(16, [[3, 6], [10, 13], [2, 12], [11, 3]]),
-    SamplePositions::new(16, [[6, 14], [8, 1], [4, 2], [13, 11]]),
-    SamplePositions::new(16, [[0, 8], [15, 4], [14, 15], [1, 0]]),
-];
+const SIXTEEN: [SamplePositions; 1] = [SamplePositions::new(
+    16,
+    &[
+        [[9, 9], [7, 5], [5, 10], [12, 7]],
+        [[3, 6], [10, 13], [2, 12], [11, 3]],
+        [[6, 14], [8, 1], [4, 2], [13, 11]],
+        [[0, 8], [15, 4], [14, 15], [1, 0]],
+    ],
+)];
 
 /// Grids of 8 x 8 and 16 x 16.
-const SIXTY_FOUR: [SamplePositions; 16] = grid(8);
-const TWO_FIFTY_SIX: [SamplePositions; 64] = grid(16);
+const SIXTY_FOUR: [SamplePositions; 4] = grid(8);
+const TWO_FIFTY_SIX: [SamplePositions; 16] = grid(16);
 
 /// Returns a grid of `side` x `side` samples: each position in the upper left quarter with its
 /// rotations by quarter turns, the nearest first.
 const fn grid<const PASSES: usize>(side: i32) -> [SamplePositions; PASSES] {
+    const GROUPS: usize = MANY / FOUR;
     let (mut passes, half, parts) = ([SamplePositions::MIDDLE; PASSES], side / 2, 2 * side);
+    let mut groups = [[[0; 2]; FOUR]; GROUPS];
     let mut i = 0;
     while i < half * half {
         // From the centre outwards, so that the nearest samples come first.
         let (x, y) = (side - 1 - 2 * (i % half), side - 1 - 2 * (i / half));
-        // Quarter turns keep each pass balanced around the centre.
-        let turned = [[x, y], [parts - y, x], [parts - x, parts - y], [y, parts - x]];
-        passes[i as usize] = SamplePositions::new(parts, turned);
+        // Quarter turns keep each group balanced around the centre.
+        let at = i as usize;
+        groups[at % GROUPS] = [[x, y], [parts - y, x], [parts - x, parts - y], [y, parts - x]];
+        if at % GROUPS == GROUPS - 1 {
+            passes[at / GROUPS] = SamplePositions::new(parts, &groups);
+        }
         i += 1;
     }
     passes
@@ -128,13 +158,13 @@ mod tests {
     use super::*;
 
     fn all(samples: Samples) -> Vec<[i32; 2]> {
-        passes(samples).iter().flat_map(|positions| positions.shifts).collect()
+        shifts(samples).collect()
     }
 
     #[test]
     fn each_four_lie_around_the_middle() {
         for samples in &Samples::ALL[1..] {
-            for SamplePositions { shifts, .. } in passes(*samples) {
+            for shifts in all(*samples).as_chunks::<FOUR>().0 {
                 // In every direction, some lie on one side of a line through the centre, some on
                 // the other.
                 for line in shifts {

@@ -39,16 +39,17 @@ pub(crate) const fn within(x: i32, y: i32) -> usize {
     (y % BLOCK * BLOCK + x % BLOCK) as usize
 }
 
-/// Computes the indices of sixteen pixels in a tile's visibility buffer, for one of `N` samples.
+/// Computes the indices of sixteen pixels in a tile's visibility buffer, for one of `samples`
+/// samples.
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "small numbers")]
-pub(crate) fn lanes_place<S: Simd, const N: usize>(
+pub(crate) fn lanes_place<S: Simd>(
     x: i32x16<S>,
     y: i32x16<S>,
-    sample: usize,
+    (sample, samples): (usize, usize),
 ) -> i32x16<S> {
     // Shifts and masks divide by 8: the block, and the place in it.
     let block = ((y >> 3) << 3) + (x >> 3);
-    let first = (block * (N * BLOCK_PIXELS) as i32) + (sample * BLOCK_PIXELS) as i32;
+    let first = (block * (samples * BLOCK_PIXELS) as i32) + (sample * BLOCK_PIXELS) as i32;
     first + ((y & 7) << 3) + (x & 7)
 }

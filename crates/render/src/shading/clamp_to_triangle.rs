@@ -12,7 +12,6 @@ use fearless_simd::Level;
 use super::barycentrics::Barycentrics;
 use super::fragments::Fragments;
 use super::triangle_attributes::{AttributeNumber, TriangleAttributes};
-use crate::screen::sample_positions::ALL;
 use crate::screen::tiles::BLOCK;
 use crate::simd::gather::{SLOTS, paged};
 use crate::simd::{Kernel, Lanes, Number, Real};
@@ -64,7 +63,7 @@ impl<T: Number> Hold<'_, T> {
             let outside = Real::max(Real::max(-first, -second), -third);
             // A triangle shown by all samples covers the centre, despite rounding.
             let shares = lanes.whole(&fragments.shares, at);
-            let outside = lanes.lift(f64::from(ALL)).if_more(shares, outside, zero);
+            let outside = lanes.lift(f64::from(fragments.samples)).if_more(shares, outside, zero);
             let mut place = [x, y];
             // Most groups have no pixel outside and skip the search.
             if lanes.any_more(outside, zero) {

@@ -121,7 +121,7 @@ fn one<T: ShadingNumber>(
             let mut shader = Shader::<T>::default();
             shader.tile.begin(plan, asked.bounds, || asked.depths);
             let place = usize::try_from((y & 7) * 8 + (x & 7)).unwrap_or(0);
-            shader.fragments.begin_shared(0);
+            shader.fragments.begin_shared(0, 1);
             shader.fragments.add(number, [x & !7, y & !7], place, 1);
             // A single fragment is lit at its pixel's centre.
             shader.fragments.shared = false;

@@ -39,6 +39,8 @@ pub(crate) struct Fragments {
     /// of its pixel.
     pub(crate) shared: bool,
     pub(crate) shares: [i32; BATCH],
+    /// The number of samples of every pixel, if fragments may share a pixel.
+    pub(crate) samples: i32,
     /// The number of slots in use.
     pub(crate) count: usize,
     /// The triangles of the slots, by their numbers in the frame.
@@ -81,6 +83,7 @@ impl Default for Fragments {
             several: false,
             shared: false,
             shares: [0; BATCH],
+            samples: 1,
             count: 0,
             numbers: [0; SLOTS],
             table: [0; TABLE],
@@ -350,19 +353,19 @@ impl Fragments {
         i
     }
 
-    /// Sets each fragment's number of samples of its pixel.
-    pub(crate) fn share(&mut self, of_positions: &[i32; BLOCK_PIXELS]) {
-        self.shared = true;
+    /// Sets each fragment's number of samples of its pixel, out of `samples`.
+    pub(crate) fn share(&mut self, of_positions: &[i32; BLOCK_PIXELS], samples: i32) {
+        (self.shared, self.samples) = (true, samples);
         for (share, place) in self.shares.iter_mut().zip(&self.pixels[..self.len]) {
             *share = of_positions[usize::from(*place) % BLOCK_PIXELS];
         }
     }
 
-    /// Empties the list, for fragments that share pixels. Triangles keep their slots if fewer than
-    /// `most` are in use.
-    pub(crate) fn begin_shared(&mut self, most: usize) {
+    /// Empties the list, for fragments that share pixels of this many samples. Triangles keep their
+    /// slots if fewer than `most` are in use.
+    pub(crate) fn begin_shared(&mut self, most: usize, samples: i32) {
         self.begin_block();
-        self.shared = true;
+        (self.shared, self.samples) = (true, samples);
         if !(self.goes_on && self.count < most) {
             self.begin_list();
         }
@@ -395,7 +398,7 @@ impl Fragments {
             self.count += 1;
         }
         self.begin_block();
-        self.shared = other.shared;
+        (self.shared, self.samples) = (other.shared, other.samples);
         for (from, place) in other.pixels[..other.len].iter().enumerate() {
             let slot = other.slots[from].cast_unsigned() as usize;
             if keep[slot] {

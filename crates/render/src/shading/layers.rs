@@ -2,7 +2,7 @@
 //! from far to near.
 //!
 //! Every layer is shaded like any block, so transparent surfaces support all surface properties.
-//! With four samples per pixel, each sample has separate layers. Samples that show the same
+//! With several samples per pixel, each sample has separate layers. Samples that show the same
 //! triangles in the same order throughout a block are coloured once.
 
 use super::blend::Blend;
@@ -119,8 +119,9 @@ impl<T: ShadingNumber> Shader<T> {
             return;
         }
         // With several samples, a pixel's centre may be outside of its triangle.
-        if context.frame.sample_positions().are_many() {
-            self.fragments.share(&[1; BLOCK_PIXELS]);
+        let samples = context.frame.sample_positions().shares();
+        if samples > 1 {
+            self.fragments.share(&[1; BLOCK_PIXELS], samples);
         } else {
             self.fragments.shares.fill(1);
         }

@@ -21,7 +21,6 @@ use super::surface::{Out, Shader};
 use crate::frame::FramePlan;
 use crate::raster::tile::Visibility;
 use crate::screen::coverage::PixelBox;
-use crate::screen::sample_positions::{ALL, FOUR};
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE, TILE_SIDE, tiles_of};
 use crate::simd::{BATCH, Bits};
 use marraztu_core::accuracy::LightAt;
@@ -309,7 +308,7 @@ impl<T: ShadingNumber> Painter<T> {
         }
     }
 
-    /// Colours a block of pixels with four samples.
+    /// Colours a block of pixels with several samples.
     fn block_of_samples(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -326,12 +325,13 @@ impl<T: ShadingNumber> Painter<T> {
         // Separate samples need the fragment list, so waiting blocks are coloured before.
         shader.finish_waiting(context, canvas);
         let mut sums = Sums::new(context.plan.variants.are_linear());
-        let shows = shader.add_samples(context, (samples, planes), corner, (&mut sums, None));
-        canvas.put(at, &sums.means(FOUR.ilog2()));
+        let of = (&mut *samples, &planes[0]);
+        let shows = shader.add_samples(context, of, corner, (&mut sums, None));
+        canvas.put(at, &sums.means(planes.len().ilog2()));
         shows
     }
 
-    /// Adds the colours of a tile, for four samples or one, to the sums.
+    /// Adds the colours of a tile, for the samples of a pass, to the sums.
     pub(crate) fn add(&mut self, context: &ShadingContext<'_, T>, tile: usize, to: &TileSums) {
         let ShadingContext { plan, frame, .. } = *context;
         let mut to = to.lock();
@@ -339,7 +339,7 @@ impl<T: ShadingNumber> Painter<T> {
         let many = frame.sample_positions().are_many();
         if !self.see(context, tile, bounds) {
             // A pass without primitives adds background to every pixel, and needs no sums.
-            to.background += if many { ALL } else { 1 };
+            to.background += frame.sample_positions().shares();
         } else {
             for (block, to) in to.blocks(plan).iter_mut().enumerate() {
                 match many {
@@ -372,7 +372,7 @@ impl<T: ShadingNumber> Painter<T> {
         }
     }
 
-    /// Adds the colours of a block of four samples.
+    /// Adds the colours of a block of several samples.
     fn add_block(
         &mut self,
         context: &ShadingContext<'_, T>,
@@ -380,25 +380,26 @@ impl<T: ShadingNumber> Painter<T> {
         BlockPasses { sums, kept, background }: &mut BlockPasses,
     ) {
         let Self { shader, visibility, samples, layered, .. } = self;
-        let corner = visibility.corner(block);
+        let (corner, all) = (visibility.corner(block), context.frame.sample_positions().shares());
         if layered.layers.touches(block) {
             layered.add(context, (shader, visibility), (block, corner), sums);
         } else if !visibility.shows(block) {
-            *background += ALL;
+            *background += all;
         } else if let Some(number) = visibility.whole(block) {
             // An earlier pass has lit this triangle in all pixels of the block.
             if kept.are_all_of(number) {
-                sums.add_to_all(context.level, kept.parts(), &[ALL; BLOCK_PIXELS]);
+                sums.add_to_all(context.level, kept.parts(), &[all; BLOCK_PIXELS]);
             } else {
                 let mut out = Out::Kept(sums, kept, BLOCK_PIXELS);
                 shader.fragments.list_full_block(number, corner);
-                shader.fragments.shares = [ALL; BATCH];
+                shader.fragments.shares = [all; BATCH];
                 shader.color_group(&group_of(context, number), &mut out);
             }
         } else {
             let planes = visibility.planes(block);
             samples.compare(context.level, planes);
-            shader.add_samples(context, (samples, planes), corner, (sums, Some(kept)));
+            let of = (&mut *samples, &planes[0]);
+            shader.add_samples(context, of, corner, (sums, Some(kept)));
         }
     }
 

@@ -1,4 +1,4 @@
-//! MSAA resolve: from four samples of a block's pixels to the mean of their colours.
+//! MSAA resolve: from the samples of a block's pixels to the mean of their colours.
 //!
 //! Most blocks show the same triangle in all samples of each pixel, and cost no more than with one
 //! sample. In other blocks a pixel is lit once for each triangle that any of its samples shows: the
@@ -13,101 +13,115 @@ use super::context::{ShadingContext, one_group};
 use super::interpolated::ShadingNumber;
 use super::runs::Shown;
 use super::surface::{Out, Shader};
-use crate::raster::visibility_buffer::{BACKGROUND, Planes, Visible, seen, seen_number};
-use crate::screen::sample_positions::FOUR;
+use crate::raster::entries::keys_and_numbers;
+use crate::raster::visibility_buffer::{BACKGROUND, Plane, Visible, seen, seen_number};
+use crate::screen::sample_positions::MANY;
 use crate::screen::tiles::BLOCK_PIXELS;
 use crate::simd::{BATCH, Bits};
 
 /// The primitives that the samples of a block's pixels show.
 #[derive(Debug)]
 pub(crate) struct Samples {
-    /// The numbers of the primitives.
-    numbers: [[u32; BLOCK_PIXELS]; FOUR],
-    /// The number of samples, from each one on, with the same primitive; only valid for pixels in
-    /// `new`.
-    shares: [[i32; BLOCK_PIXELS]; FOUR],
-    /// The pixels in which a sample shows a primitive that no earlier sample shows.
-    new: [u64; FOUR],
+    /// The primitives of the first samples.
+    first: [u32; BLOCK_PIXELS],
+    /// The number of samples that show them.
+    shares: [i32; BLOCK_PIXELS],
+    /// The other primitives of all pixels.
+    others: Vec<Other>,
+}
+
+/// A primitive that some samples of a pixel show, but not the first.
+#[derive(Clone, Copy, Debug)]
+struct Other {
+    place: usize,
+    number: u32,
+    /// The number of samples that show it.
+    share: i32,
 }
 
 impl Default for Samples {
     fn default() -> Self {
-        let numbers = [[BACKGROUND; BLOCK_PIXELS]; FOUR];
-        Self { numbers, shares: [[0; BLOCK_PIXELS]; FOUR], new: [0; FOUR] }
+        Self { first: [0; BLOCK_PIXELS], shares: [0; BLOCK_PIXELS], others: Vec::new() }
     }
 }
 
 impl Samples {
     /// Compares the samples of each pixel. Returns whether each pixel shows a single primitive.
-    pub(crate) fn compare(&mut self, level: Level, planes: &Planes) -> bool {
+    pub(crate) fn compare(&mut self, level: Level, planes: &[Plane]) -> bool {
         dispatch!(level, simd => self.compare_in(simd, planes));
-        self.new[1..] == [0; FOUR - 1]
-    }
-
-    /// Adds the cached colours of earlier passes. Returns, for each sample, the pixels that show a
-    /// primitive neither shown by an earlier sample nor lit in an earlier pass.
-    fn add_kept(&self, level: Level, kept: &Kept, sums: &mut Sums) -> [u64; FOUR] {
-        let mut left = self.new;
-        for (sample, left) in left.iter_mut().enumerate() {
-            if *left == 0 {
-                continue;
-            }
-            let known = *left & kept.known(level, &self.numbers[sample]);
-            if known != 0 {
-                // Pixels without a cached colour get a share of 0 instead of a branch.
-                let bit = |place: usize| i32::from(known >> place & 1 == 1);
-                let shares = &self.shares[sample];
-                let shares = std::array::from_fn(|place| shares[place] * bit(place));
-                sums.add_to_all(level, kept.parts(), &shares);
-                *left &= !known;
-            }
-        }
-        left
+        self.others.is_empty()
     }
 
     #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, reason = "the lower half of a word is the number")]
-    fn compare_in<S: Simd>(&mut self, simd: S, planes: &Planes) {
-        // The lower half of an entry is the inverted number of its primitive.
-        for (numbers, visibility) in self.numbers.iter_mut().zip(planes) {
-            for (number, word) in numbers.iter_mut().zip(visibility) {
-                *number = !(*word as u32);
-            }
-        }
-        self.new = [u64::MAX, 0, 0, 0];
+    fn compare_in<S: Simd>(&mut self, simd: S, planes: &[Plane]) {
+        self.others.clear();
         let (none, one) = (i32x16::splat(simd, 0), i32x16::splat(simd, 1));
         for at in (0..BLOCK_PIXELS).step_by(16) {
-            let of = |sample: usize| {
-                let numbers: &[i32; BLOCK_PIXELS] = bytemuck::cast_ref(&self.numbers[sample]);
-                i32x16::from_slice(simd, &numbers[at..at + 16])
-            };
-            // All six comparisons of four samples; a primitive counts for the first sample that
-            // shows it.
-            let (a, b, c, d) = (of(0), of(1), of(2), of(3));
-            let (ab, ac, ad) = (a.simd_eq(b), a.simd_eq(c), a.simd_eq(d));
-            let (bc, bd, cd) = (b.simd_eq(c), b.simd_eq(d), c.simd_eq(d));
-            let count = |alike: fearless_simd::mask32x16<S>| alike.select(one, none);
-            let shares = [
-                one + count(ab) + count(ac) + count(ad),
-                one + count(bc) + count(bd),
-                one + count(cd),
-                one,
-            ];
-            for (row, shares) in self.shares.iter_mut().zip(shares) {
-                shares.store_slice(&mut row[at..at + 16]);
+            let numbers = |plane: &Plane| keys_and_numbers(simd, &plane[at..at + 16]).1;
+            let [first, others @ ..] = planes else { return };
+            let first = numbers(first);
+            let mut shares = one;
+            for other in others {
+                shares += numbers(other).simd_eq(first).select(one, none);
             }
-            // A primitive is new in a sample if no earlier sample shows it.
-            self.new[1] |= (!ab).to_bitmask() << at;
-            self.new[2] |= (!(ac | bc)).to_bitmask() << at;
-            self.new[3] |= (!(ad | bd | cd)).to_bitmask() << at;
+            first.store_slice(&mut self.first[at..at + 16]);
+            shares.store_slice(&mut self.shares[at..at + 16]);
+            let all = i32::try_from(planes.len()).unwrap_or(0);
+            for lane in Bits(shares.simd_lt(all).to_bitmask()) {
+                self.list_others(simd, planes, at + lane);
+            }
         }
+    }
+
+    /// Lists the primitives of a pixel that its first sample does not show.
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "the lower half of a word is the number")]
+    fn list_others<S: Simd>(&mut self, simd: S, planes: &[Plane], place: usize) {
+        let place = place % BLOCK_PIXELS;
+        // Samples beyond the last repeat the first, which is not listed.
+        let mut numbers = [self.first[place]; MANY];
+        for (number, plane) in numbers.iter_mut().zip(planes) {
+            *number = !(plane[place] as u32);
+        }
+        let all = u32x16::from_slice(simd, &numbers);
+        let mut left = !all.simd_eq(numbers[0]).to_bitmask() & 0xffff;
+        while left != 0 {
+            let number = numbers[left.trailing_zeros() as usize % MANY];
+            let same = all.simd_eq(number).to_bitmask();
+            let share = same.count_ones().cast_signed();
+            self.others.push(Other { place, number, share });
+            left &= !same;
+        }
+    }
+
+    /// Adds the cached colours of earlier passes. Returns the pixels whose first primitive was not
+    /// lit in an earlier pass; other primitives that were are removed.
+    fn add_kept(&mut self, level: Level, kept: &Kept, sums: &mut Sums) -> u64 {
+        let known = kept.known(level, &self.first);
+        if known != 0 {
+            // Pixels without a cached colour get a share of 0 instead of a branch.
+            let bit = |place: usize| i32::from(known >> place & 1 == 1);
+            let shares = std::array::from_fn(|place| self.shares[place] * bit(place));
+            sums.add_to_all(level, kept.parts(), &shares);
+        }
+        self.others.retain(|other| {
+            let Other { place, number, share } = *other;
+            let is_known = number != NOTHING && kept.numbers[place] == number;
+            if is_known {
+                let [red, green, blue, _] = kept.parts[place];
+                let parts = [red, green, blue].map(|part| part * share.cast_unsigned());
+                sums.add_parts(place, parts);
+            }
+            !is_known
+        });
+        !known
     }
 }
 
 /// The colour of one triangle for each pixel of a block, from earlier passes over the picture.
 ///
-/// Sixteen and sixty-four samples per pixel are drawn four at a time. Light is evaluated at the
-/// centre of a pixel, or at the triangle's point nearest to it. Every pass would therefore compute
+/// Sixty-four samples per pixel are drawn sixteen at a time. Light is evaluated at the centre of a
+/// pixel, or at the triangle's point nearest to it. Every pass would therefore compute
 /// the same colour for a triangle in a pixel. The colour is cached, and only triangles that earlier
 /// passes did not show are lit.
 #[derive(Clone, Debug)]
@@ -171,31 +185,32 @@ impl<T: ShadingNumber> Shader<T> {
     pub(crate) fn add_samples(
         &mut self,
         context: &ShadingContext<'_, T>,
-        (samples, planes): (&Samples, &Planes),
+        (samples, first): (&mut Samples, &Plane),
         corner: [i32; 2],
         (sums, mut kept): (&mut Sums, Option<&mut Kept>),
     ) -> bool {
-        // For each sample, the pixels with an unlit primitive that no earlier sample shows.
+        // The pixels whose first primitive is unlit.
         let unlit = match &kept {
             Some(kept) => samples.add_kept(context.level, kept, sums),
-            None => samples.new,
+            None => u64::MAX,
         };
-        if unlit == [0; FOUR] {
+        if unlit == 0 && samples.others.is_empty() {
             return false;
         }
         // Pixels lit in earlier passes become empty entries.
-        let entry = |place: usize| planes[0][place] & (unlit[0] >> place & 1).wrapping_neg();
+        let entry = |place: usize| first[place] & (unlit >> place & 1).wrapping_neg();
         let masked = kept.is_some().then(|| std::array::from_fn(entry));
-        let entries = masked.as_ref().unwrap_or(&planes[0]);
+        let entries = masked.as_ref().unwrap_or(first);
+        let all = context.frame.sample_positions().shares();
         let mut shown = self.list_first(context, entries, corner);
         if shown.triangles == 0 {
-            self.fragments.begin_shared(0);
+            self.fragments.begin_shared(0, all);
         } else {
-            self.fragments.share(&samples.shares[0]);
+            self.fragments.share(&samples.shares, all);
         }
         // Lines and background need no light.
-        for place in Bits(unlit[0] & !shown.triangles) {
-            let (number, share) = (samples.numbers[0][place], samples.shares[0][place]);
+        for place in Bits(unlit & !shown.triangles) {
+            let (number, share) = (samples.first[place], samples.shares[place]);
             add_other(context, seen_number(number), place, share, sums);
         }
         let mut first = self.fragments.len;
@@ -214,21 +229,17 @@ impl<T: ShadingNumber> Shader<T> {
             color(self, sums);
         }
         // The primitives of later samples join the list until it is full.
-        for (sample, pixels) in unlit.into_iter().enumerate().skip(1) {
-            for place in Bits(pixels) {
-                let number = samples.numbers[sample][place];
-                let share = samples.shares[sample][place];
-                if !matches!(seen_number(number), Visible::Triangle(_)) {
-                    shown.lines |= u64::from(number != BACKGROUND) << place;
-                    add_other(context, seen_number(number), place, share, sums);
-                    continue;
-                }
-                shown.triangles |= 1 << place;
-                if self.fragments.is_full(most) {
-                    color(self, sums);
-                }
-                self.fragments.add(number, corner, place, share);
+        for Other { place, number, share } in samples.others.iter().copied() {
+            if !matches!(seen_number(number), Visible::Triangle(_)) {
+                shown.lines |= u64::from(number != BACKGROUND) << place;
+                add_other(context, seen_number(number), place, share, sums);
+                continue;
             }
+            shown.triangles |= 1 << place;
+            if self.fragments.is_full(most) {
+                color(self, sums);
+            }
+            self.fragments.add(number, corner, place, share);
         }
         color(self, sums);
         (shown.triangles | shown.lines) != 0
@@ -281,7 +292,7 @@ impl<T: ShadingNumber> Shader<T> {
                 self.color_groups(context, out);
             }
         }
-        self.fragments.begin_shared(most);
+        self.fragments.begin_shared(most, context.frame.sample_positions().shares());
     }
 }
 
@@ -301,42 +312,51 @@ pub(super) fn add_other<T>(
 }
 
 #[cfg(test)]
-#[expect(clippy::cast_possible_truncation, reason = "the lower half of a word is the number")]
+#[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "small numbers")]
 mod tests {
     use super::*;
 
     #[test]
     fn every_sample_counts_once_with_the_first_that_shows_the_same() {
         let mut state = 1_u64;
-        for _ in 0..500 {
-            let planes: Planes = std::array::from_fn(|_| {
-                std::array::from_fn(|_| {
-                    state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-                    match state >> 62 {
-                        0 => 0,
-                        number => (state >> 20) << 32 | u64::from(!u32::try_from(number).unwrap()),
-                    }
+        for round in 0..500 {
+            let samples_per_pixel = if round % 2 == 0 { 4 } else { MANY };
+            let planes: Vec<Plane> = (0..samples_per_pixel)
+                .map(|_| {
+                    std::array::from_fn(|_| {
+                        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                        match state >> 62 {
+                            0 => 0,
+                            number => {
+                                (state >> 20) << 32 | u64::from(!u32::try_from(number).unwrap())
+                            }
+                        }
+                    })
                 })
-            });
+                .collect();
             let number = |sample: usize, place: usize| !(planes[sample][place] as u32);
             let mut samples = Samples::default();
             let alike = samples.compare(Level::new(), &planes);
+            let mut want = Vec::new();
             for place in 0..BLOCK_PIXELS {
-                for sample in 0..FOUR {
+                let shows = |own: u32| {
+                    (0..planes.len()).filter(|sample| number(*sample, place) == own).count() as i32
+                };
+                assert_eq!(samples.first[place], number(0, place));
+                assert_eq!(samples.shares[place], shows(number(0, place)));
+                let mut seen = vec![number(0, place)];
+                for sample in 1..planes.len() {
                     let own = number(sample, place);
-                    assert_eq!(samples.numbers[sample][place], own);
-                    let new = (0..sample).all(|earlier| number(earlier, place) != own);
-                    assert_eq!(samples.new[sample] >> place & 1 == 1, new);
-                    let share = (sample..FOUR).filter(|later| number(*later, place) == own).count();
-                    assert!(!new || samples.shares[sample][place] == share as i32);
+                    if !seen.contains(&own) {
+                        seen.push(own);
+                        want.push((place, own, shows(own)));
+                    }
                 }
             }
-            assert_eq!(
-                alike,
-                planes.iter().all(|plane| {
-                    (0..BLOCK_PIXELS).all(|place| plane[place] as u32 == planes[0][place] as u32)
-                })
-            );
+            let got: Vec<_> =
+                samples.others.iter().map(|it| (it.place, it.number, it.share)).collect();
+            assert_eq!(got, want);
+            assert_eq!(alike, want.is_empty());
         }
     }
 }

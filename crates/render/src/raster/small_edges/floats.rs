@@ -9,7 +9,6 @@ use fearless_simd::{
 use super::{Boxes, Corners, Edges, Places, UsualEdges, linear_depths};
 use crate::raster::beyond::reach;
 use crate::screen::coverage::SUBPIXELS;
-use crate::screen::sample_positions::SamplePositions;
 use crate::simd::gather::of_lanes;
 use marraztu_core::accuracy::Coverage;
 use marraztu_core::base::math::each;
@@ -79,12 +78,8 @@ impl<S: Simd> Edges<S> for FloatEdges<S> {
     }
 
     #[inline(always)]
-    fn shifts<const N: usize>(&self, sample_positions: &SamplePositions) -> [Self::Shift; N] {
-        let mut shifts = [[0.0; 2]; N];
-        for (sample, shift) in shifts.iter_mut().enumerate() {
-            *shift = sample_positions.shift::<N>(sample).map(|by| by as f32 / SUBPIXELS as f32);
-        }
-        shifts
+    fn shift(&self, by: [i32; 2]) -> Self::Shift {
+        by.map(|by| by as f32 / SUBPIXELS as f32)
     }
 
     #[inline(always)]

@@ -5,7 +5,6 @@ use fearless_simd::{Select as _, Simd, SimdBase as _, SimdInt as _, f32x16, mask
 
 use super::{Boxes, Corners, Edge, Edges, Places, linear_depths};
 use crate::screen::coverage::SUBPIXELS;
-use crate::screen::sample_positions::SamplePositions;
 use crate::simd::gather::of_lanes;
 use marraztu_core::base::math::each;
 
@@ -67,14 +66,10 @@ impl<S: Simd> Edges<S> for UsualEdges<S> {
     }
 
     #[inline(always)]
-    fn shifts<const N: usize>(&self, sample_positions: &SamplePositions) -> [Self::Shift; N] {
+    fn shift(&self, by: [i32; 2]) -> Self::Shift {
         // Steps are multiples of 256 and offsets are in 1/256 pixel, so the products are exact.
-        let (mut shifts, [a, b]) = ([self.first; N], self.steps);
-        for (sample, shift) in shifts.iter_mut().enumerate() {
-            let [x, y] = sample_positions.shift::<N>(sample).map(|by| by as f32 / SUBPIXELS as f32);
-            *shift = [a[0] * x + b[0] * y, a[1] * x + b[1] * y, a[2] * x + b[2] * y];
-        }
-        shifts
+        let ([a, b], [x, y]) = (self.steps, by.map(|by| by as f32 / SUBPIXELS as f32));
+        [a[0] * x + b[0] * y, a[1] * x + b[1] * y, a[2] * x + b[2] * y]
     }
 
     #[inline(always)]

@@ -8,7 +8,6 @@ use fearless_simd::{
 
 use super::{Boxes, Corners, Edge, Edges, Places, linear_depths};
 use crate::screen::coverage::{Grid, SUBPIXELS};
-use crate::screen::sample_positions::SamplePositions;
 use crate::simd::gather::{of_lanes, permute};
 use crate::simd::in_f64;
 use marraztu_core::base::math::each;
@@ -75,16 +74,11 @@ impl<S: Simd> Edges<S> for WholeEdges<S> {
     }
 
     #[inline(always)]
-    fn shifts<const N: usize>(&self, sample_positions: &SamplePositions) -> [Self::Shift; N] {
-        let (mut shifts, [a, b]) = ([self.first; N], self.steps);
-        for (sample, shift) in shifts.iter_mut().enumerate() {
-            let [x, y] = sample_positions.shift::<N>(sample);
-            for (i, shift) in shift.iter_mut().enumerate() {
-                // Steps are multiples of 256, so the steps by one subpixel are exact.
-                *shift = (a[i] >> 8) * x + (b[i] >> 8) * y;
-            }
-        }
-        shifts
+    fn shift(&self, [x, y]: [i32; 2]) -> Self::Shift {
+        let [a, b] = self.steps;
+        // Steps are multiples of 256, so the steps by one subpixel are exact.
+        let gain = |i: usize| (a[i] >> 8) * x + (b[i] >> 8) * y;
+        [gain(0), gain(1), gain(2)]
     }
 
     #[inline(always)]
@@ -183,19 +177,16 @@ impl<S: Simd> Edges<S> for FineEdges<S> {
     }
 
     #[inline(always)]
-    fn shifts<const N: usize>(&self, sample_positions: &SamplePositions) -> [Self::Shift; N] {
-        let (mut shifts, [a, b]) = ([(self.first, self.gradients); N], self.steps);
-        for (sample, (quotients, edges)) in shifts.iter_mut().enumerate() {
-            let [x, y] = Grid::Fine.offset(sample_positions.shift::<N>(sample));
-            for i in 0..3 {
-                // The quotient of the sum can differ by one from the sum of the quotients, so it is
-                // computed here.
-                let gain = a[i] * x + b[i] * y;
-                quotients[i] = ((self.first[i] + gain) >> FINE) - (self.first[i] >> FINE);
-                edges[i] = gain.to_float();
-            }
-        }
-        shifts
+    fn shift(&self, by: [i32; 2]) -> Self::Shift {
+        let ([a, b], [x, y]) = (self.steps, Grid::Fine.offset(by));
+        let gain = |i: usize| a[i] * x + b[i] * y;
+        // The quotient of the sum can differ by one from the sum of the quotients, so it is
+        // computed here.
+        let quotient = |i: usize| ((self.first[i] + gain(i)) >> FINE) - (self.first[i] >> FINE);
+        (
+            [quotient(0), quotient(1), quotient(2)],
+            [gain(0).to_float(), gain(1).to_float(), gain(2).to_float()],
+        )
     }
 
     #[inline(always)]

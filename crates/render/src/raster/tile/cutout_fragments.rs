@@ -12,7 +12,7 @@ use crate::raster::alpha_test::AlphaTest;
 use crate::raster::depth_format::Format;
 use crate::raster::entries::word;
 use crate::raster::large;
-use crate::screen::sample_positions::FOUR;
+use crate::screen::sample_positions::MANY;
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, BLOCKS, PIXELS};
 use crate::simd::{Bits, UP_TO_SIXTEEN};
 
@@ -79,15 +79,15 @@ impl<S: Simd> large::InFront<S> for List<'_> {
 
 impl Fragments {
     /// Draws the fragments that pass the alpha test of a triangle, into a tile with this first
-    /// pixel.
+    /// pixel and this number of samples.
     #[inline(always)]
-    pub(super) fn put<S: Simd, const N: usize>(
+    pub(super) fn put<S: Simd>(
         &self,
         simd: S,
         format: impl Format,
         (test, [left, top]): (Option<&AlphaTest<'_, '_>>, [i32; 2]),
-        number: u32,
-        buffer: &mut [u64; FOUR * PIXELS],
+        (number, samples): (u32, usize),
+        buffer: &mut [u64; MANY * PIXELS],
     ) {
         // Sixteen fragments of any rows are tested at once, then written one by one.
         for at in (0..self.count).step_by(16) {
@@ -104,7 +104,7 @@ impl Fragments {
                 ],
             ];
             let pixel = |lane: usize| {
-                let [x, y] = pixel_of::<N>(self.place(at + lane));
+                let [x, y] = pixel_of(self.place(at + lane), samples);
                 [left + x, top + y]
             };
             let opaque = match test {
@@ -124,13 +124,13 @@ impl Fragments {
     /// Returns the index of a fragment in the visibility buffer.
     #[inline(always)]
     fn place(&self, i: usize) -> usize {
-        self.places[i].cast_unsigned() as usize % (FOUR * PIXELS)
+        self.places[i].cast_unsigned() as usize % (MANY * PIXELS)
     }
 }
 
 /// Returns the column and row in the tile of an entry of the visibility buffer.
-fn pixel_of<const N: usize>(place: usize) -> [i32; 2] {
-    let (block, within) = (place / (N * BLOCK_PIXELS), place % BLOCK_PIXELS);
+fn pixel_of(place: usize, samples: usize) -> [i32; 2] {
+    let (block, within) = (place / (samples * BLOCK_PIXELS), place % BLOCK_PIXELS);
     let (side, blocks) = (BLOCK as usize, BLOCKS as usize);
     let (x, y) = (block % blocks * side + within % side, block / blocks * side + within / side);
     [x, y].map(|i| i32::try_from(i).unwrap_or(0))

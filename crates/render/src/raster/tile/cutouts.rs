@@ -23,10 +23,7 @@ pub(super) struct Cutouts<'a> {
 
 /// Classifies the pixels of a block by their holes, for all samples together.
 #[inline(always)]
-fn holes_in_block<const N: usize>(
-    tests: &[Option<AlphaTest<'_, '_>>; N],
-    first: [i32; 2],
-) -> Holes {
+fn holes_in_block(tests: &[Option<AlphaTest<'_, '_>>], first: [i32; 2]) -> Holes {
     let mut each = tests
         .iter()
         .map(|test| test.as_ref().map_or(Holes::Nowhere, |it| it.holes_in_block(first)));
@@ -70,11 +67,14 @@ impl Visibility {
         {
             return;
         }
-        let tests: [Option<AlphaTest<'_, '_>>; N] = std::array::from_fn(test);
+        let samples = positions.count_in::<N>();
+        let tests: [Option<AlphaTest<'_, '_>>; N] =
+            std::array::from_fn(|sample| if sample < samples { test(sample) } else { None });
+        let tests = &tests[..samples];
         let large = BlockTriangle::Large(large);
-        some &= !self.draw_even_blocks::<N>(simd.level(), &large, some & whole, &tests);
+        some &= !self.draw_even_blocks::<N>(simd.level(), &large, some & whole, tests);
         for block in Bits(some) {
-            self.draw_tested::<S, N>(simd, &large, block, whole >> block & 1 != 0, &tests);
+            self.draw_tested::<S, N>(simd, &large, block, whole >> block & 1 != 0, tests);
         }
     }
 
@@ -86,7 +86,7 @@ impl Visibility {
         triangle: &BlockTriangle,
         block: usize,
         whole: bool,
-        tests: &[Option<AlphaTest<'_, '_>>; N],
+        tests: &[Option<AlphaTest<'_, '_>>],
     ) {
         self.write::<N>(simd.level(), block);
         let (first, format) = (self.corner(block), Any(self.depth_format));
@@ -110,7 +110,7 @@ impl Visibility {
         level: Level,
         triangle: &BlockTriangle,
         blocks: u64,
-        tests: &[Option<AlphaTest<'_, '_>>; N],
+        tests: &[Option<AlphaTest<'_, '_>>],
     ) -> u64 {
         let (mut done, mut place) = (0, None);
         // Classifying costs a tenth of sampling. If it hardly ever succeeds, it stops.
@@ -149,13 +149,14 @@ impl Visibility {
         'a: 'b,
     {
         let format = Any(self.depth_format);
-        for sample in 0..N {
+        let samples = self.sample_positions.count_in::<N>();
+        for sample in 0..samples {
             let shift = self.sample_positions.shift::<N>(sample);
             // First pass: list the pixels in front, block by block.
             fragments.count = 0;
             for block in Bits(some) {
                 self.write::<N>(simd.level(), block);
-                let first = (block * N + sample) * BLOCK_PIXELS;
+                let first = (block * samples + sample) * BLOCK_PIXELS;
                 let whole = whole >> block & 1 != 0;
                 let mut list = List { fragments, first };
                 let plane = self.plane::<N>(block, sample);
@@ -178,7 +179,7 @@ impl Visibility {
                 #[inline(always)]
                 || {
                     let test = (test.as_ref(), corner);
-                    fragments.put::<S, N>(simd, format, test, large.number, buffer);
+                    fragments.put(simd, format, test, (large.number, samples), buffer);
                 },
             );
         }

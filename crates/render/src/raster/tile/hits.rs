@@ -44,13 +44,14 @@ impl Visibility {
                 || self.draw_colored_hits(simd, bins, tile),
             );
         }
+        let samples = self.sample_positions.count_in::<N>();
         with_format!(self.depth_format, D => bins.hits.each(
             (D::of(self.depth_format), simd),
             tile,
             #[inline(always)]
             |place, word| {
                 let place = place as usize % (N * PIXELS);
-                let block = place / (N * BLOCK_PIXELS);
+                let block = place / (samples * BLOCK_PIXELS);
                 // Hits of one triangle are neighbours: the block is mostly valid already.
                 if self.written >> block & 1 == 0 {
                     self.write::<N>(simd.level(), block);

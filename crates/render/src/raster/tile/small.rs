@@ -1,7 +1,7 @@
-//! Draws the small triangles that wait for a tile, with four samples per pixel.
+//! Draws the small triangles that wait for a tile, with several samples per pixel.
 //!
-//! The entries of a pixel's samples are stored side by side, so all samples of a covered pixel are
-//! compared at once. They are moved to the planes of the samples after all triangles are drawn.
+//! The entries of four samples of a pixel are stored side by side and compared at once. They are
+//! moved to the planes of the samples after all triangles are drawn.
 
 use fearless_simd::{
     Select as _, Simd, SimdBase as _, SimdMask as _, f64x4, f64x8, mask32x16, u32x16,
@@ -11,16 +11,16 @@ use super::Visibility;
 use crate::raster::bins::Bins;
 use crate::raster::covered::Covered;
 use crate::raster::depth_format::{Format, with_format};
-use crate::raster::entries::put_samples;
+use crate::raster::entries::{FOUR, put_samples};
 use crate::raster::hits::PACK;
-use crate::raster::queue::{Pack, Queue, SMALL};
+use crate::raster::queue::{Pack, Queue};
 use crate::raster::rule::{Rule, Usual};
-use crate::raster::small::{self, CoveredPixels};
+use crate::raster::small::SampledLanes;
 use crate::raster::small_edges::Edges;
-use crate::raster::tile_queues::{FIRST_SIZE, SIZES};
+use crate::raster::tile_queues::SIZES;
 use crate::raster::visibility_buffer::BACKGROUND;
 use crate::screen::coverage::PixelBox;
-use crate::screen::sample_positions::{FOUR, SamplePositions};
+use crate::screen::sample_positions::{MANY, SamplePositions};
 use crate::screen::tiles::{BLOCK_PIXELS, PIXELS, TILE, lanes_place};
 use crate::simd::Bits;
 
@@ -29,8 +29,10 @@ use crate::simd::Bits;
 pub(super) struct SmallTriangles {
     bounds: PixelBox,
     sample_positions: SamplePositions,
-    /// The entries, block by block.
-    blocks: Vec<BlockEntries>,
+    /// The number of groups of four samples.
+    groups: usize,
+    /// The entries, block by block, each group by group.
+    entries: Vec<GroupEntries>,
     /// The blocks that any triangle reaches, a bit for each. Entries of other blocks are
     /// meaningless.
     reached: u64,
@@ -39,12 +41,12 @@ pub(super) struct SmallTriangles {
     rest: Queue,
 }
 
-/// The entries of a block's pixels, with the entries of a pixel's samples side by side.
+/// The entries of a block's pixels in four samples, with the entries of a pixel side by side.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
-struct BlockEntries([[u64; FOUR]; BLOCK_PIXELS]);
+struct GroupEntries([[u64; FOUR]; BLOCK_PIXELS]);
 
-/// The entries of sixteen pixels.
+/// The entries of sixteen pixels in four samples.
 #[repr(align(64))]
 struct Entries([u64; FOUR * PACK]);
 
@@ -68,20 +70,29 @@ impl Visibility {
                 });
                 // Only the blocks that were reached are moved to the planes.
                 for block in Bits(small.reached) {
-                    self.put_pixels(simd, block, &small.blocks[block].0);
+                    self.write::<MANY>(simd.level(), block);
+                    for group in 0..small.groups {
+                        let entries = &small.entries[block * small.groups + group];
+                        self.put_pixels(simd, (block, group), &entries.0);
+                    }
                 }
             },
         );
         self.small = Some(small);
     }
 
-    /// Moves the entries of a block's pixels to the planes of their samples, with a depth test.
+    /// Moves the entries of a block's pixels in a group of samples to the planes of these samples,
+    /// with a depth test.
     #[inline(always)]
-    fn put_pixels<S: Simd>(&mut self, simd: S, block: usize, pixels: &[[u64; FOUR]; BLOCK_PIXELS]) {
-        self.write::<FOUR>(simd.level(), block);
-        let planes: &mut [f64] = bytemuck::cast_slice_mut(
-            &mut self.buffer.0[FOUR * BLOCK_PIXELS * block..][..FOUR * BLOCK_PIXELS],
-        );
+    fn put_pixels<S: Simd>(
+        &mut self,
+        simd: S,
+        (block, group): (usize, usize),
+        pixels: &[[u64; FOUR]; BLOCK_PIXELS],
+    ) {
+        let first = (block * self.sample_positions.count() + group * FOUR) * BLOCK_PIXELS;
+        let planes: &mut [f64] =
+            bytemuck::cast_slice_mut(&mut self.buffer.0[first..][..FOUR * BLOCK_PIXELS]);
         let pixels: &[f64] = bytemuck::cast_slice(pixels.as_flattened());
         for (at, eight) in (0..).step_by(8).zip(pixels.as_chunks::<32>().0) {
             // A 4 x 8 transpose in registers: from samples side by side to one row per sample.
@@ -105,7 +116,8 @@ impl SmallTriangles {
     /// Begins a tile.
     fn begin(&mut self, bounds: PixelBox, sample_positions: SamplePositions) {
         (self.bounds, self.sample_positions, self.reached) = (bounds, sample_positions, 0);
-        self.blocks.resize(BLOCK_PIXELS, BlockEntries([[0; FOUR]; BLOCK_PIXELS]));
+        self.groups = sample_positions.count() / FOUR;
+        self.entries.resize(self.groups * BLOCK_PIXELS, GroupEntries([[0; FOUR]; BLOCK_PIXELS]));
         // A cancelled frame leaves triangles in the queue.
         self.rest.clear();
     }
@@ -114,7 +126,7 @@ impl SmallTriangles {
     #[inline(always)]
     fn draw<S: Simd, D: Format>(&mut self, simd: S, format: D, of: (&[Bins], usize)) {
         for size in 0..SIZES {
-            if size + FIRST_SIZE + 1 < SMALL.len() {
+            if size + 1 < SIZES {
                 self.draw_size::<S, D, Most<S>>(simd, format, of, size);
             } else {
                 self.draw_size::<S, D, Last<S>>(simd, format, of, size);
@@ -176,47 +188,51 @@ impl SmallTriangles {
     #[inline(always)]
     fn draw_pack_in<S: Simd, D: Format, E: Edges<S>>(&mut self, format: D, pack: &Pack<S>) {
         let simd = pack[0].simd;
-        let Self { bounds, sample_positions, blocks, reached, covered, .. } = self;
-        small::each_in::<S, E, FOUR>(
-            (pack, *bounds),
-            sample_positions,
+        let Self { bounds, sample_positions, groups, entries, reached, covered, .. } = self;
+        let lanes = SampledLanes::<S, E>::new(pack, sample_positions);
+        let groups = *groups;
+        lanes.each_in(
+            *bounds,
             covered,
             #[inline(always)]
-            |pixels: &CoveredPixels<S, FOUR>, count| {
-                let CoveredPixels { x, y, number, depth, .. } = *pixels;
-                let place = lanes_place::<S, 1>(x & (TILE - 1), y & (TILE - 1), 0);
+            |pixels, count| {
+                let place = lanes_place(pixels.x & (TILE - 1), pixels.y & (TILE - 1), (0, 1));
+                let places = <[i32; PACK]>::from(place).map(|place| {
+                    let place = place.cast_unsigned() as usize % PIXELS;
+                    (place / BLOCK_PIXELS, place % BLOCK_PIXELS)
+                });
+                let places = &places[..count.min(PACK)];
+                // The entries of a block are cleared when it is first reached.
+                for (block, _) in places {
+                    if *reached >> block & 1 == 0 {
+                        *reached |= 1 << block;
+                        let own = &mut entries[block * groups..][..groups];
+                        own.iter_mut().for_each(|group| group.0.as_flattened_mut().fill(0));
+                    }
+                }
                 // A sample that is not covered gets the background's entry, which never wins the
                 // depth test.
                 let (nothing, background) =
                     (u32x16::splat(simd, 0), u32x16::splat(simd, BACKGROUND));
-                let (mut keys, mut numbers) = ([nothing; FOUR], [background; FOUR]);
-                for sample in 0..FOUR {
-                    let some = pixels.covered(sample, count);
-                    keys[sample] = some.select(format.keys(depth[sample]), nothing);
-                    numbers[sample] = some.select(number, background);
-                }
-                let mut entries = Entries([0; FOUR * PACK]);
-                put_samples(keys, numbers, &mut entries.0);
-                let places = <[i32; PACK]>::from(place).into_iter();
-                for (place, new) in places.zip(entries.0.as_chunks::<FOUR>().0).take(count) {
-                    // Entries are compared as f64: see `put_rows`.
-                    let new = f64x4::from_slice(simd, bytemuck::cast_slice(new));
-                    let old = bytemuck::cast_slice_mut(pixel(blocks, reached, place));
-                    new.max(f64x4::from_slice(simd, old)).store_slice(old);
+                for group in 0..groups {
+                    let (mut keys, mut numbers) = ([nothing; FOUR], [background; FOUR]);
+                    for i in 0..FOUR {
+                        let sample = group * FOUR + i;
+                        let some = pixels.covered(sample, count);
+                        keys[i] = some.select(format.keys(lanes.depths(pixels, sample)), nothing);
+                        numbers[i] = some.select(pixels.number, background);
+                    }
+                    let mut new = Entries([0; FOUR * PACK]);
+                    put_samples(keys, numbers, &mut new.0);
+                    for ((block, pixel), new) in places.iter().zip(new.0.as_chunks::<FOUR>().0) {
+                        // Entries are compared as f64: see `put_rows`.
+                        let new = f64x4::from_slice(simd, bytemuck::cast_slice(new));
+                        let old = &mut entries[block * groups + group].0[*pixel];
+                        let old = bytemuck::cast_slice_mut(old);
+                        new.max(f64x4::from_slice(simd, old)).store_slice(old);
+                    }
                 }
             },
         );
     }
-}
-
-/// Returns the entries of a pixel of the tile.
-#[inline(always)]
-fn pixel<'a>(blocks: &'a mut [BlockEntries], reached: &mut u64, place: i32) -> &'a mut [u64; FOUR] {
-    let place = place.cast_unsigned() as usize % PIXELS;
-    let block = place / BLOCK_PIXELS;
-    if *reached >> block & 1 == 0 {
-        *reached |= 1 << block;
-        blocks[block].0.as_flattened_mut().fill(0);
-    }
-    &mut blocks[block].0[place % BLOCK_PIXELS]
 }

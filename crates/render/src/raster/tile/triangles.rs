@@ -106,7 +106,7 @@ impl Visibility {
                 continue;
             }
             self.write::<N>(simd.level(), block);
-            for sample in 0..N {
+            for sample in 0..self.sample_positions.count_in::<N>() {
                 let shift = self.sample_positions.shift::<N>(sample);
                 let plane = self.plane::<N>(block, sample);
                 medium.draw(format, simd, (block, shift), area, None, plane);

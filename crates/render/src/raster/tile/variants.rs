@@ -37,18 +37,20 @@ impl Visibility {
                 false => None,
             };
             // One alpha test per sample: its texture position differs.
+            let samples = self.sample_positions.count_in::<N>();
             let tests: [Option<AlphaTest<'_, '_>>; N] = std::array::from_fn(|sample| {
                 let shift = self.sample_positions.shift::<N>(sample);
-                AlphaTest::of(own?, (plan, frame), number, shift)
+                AlphaTest::of(own.filter(|_| sample < samples)?, (plan, frame), number, shift)
             });
+            let tests = &tests[..samples];
             if plan.variants.coverage == Coverage::Points {
-                self.draw_points::<N>(simd.level(), (plan, frame), number, &tests);
+                self.draw_points::<N>(simd.level(), (plan, frame), number, tests);
                 continue;
             }
             let depths = each(triangle.corners, |corner| corner.depth);
             let corners = bins.unsnapped[*place as usize];
             if plan.variants.coverage == Coverage::ScanLines {
-                self.draw_scan_lines::<S, N>(simd, (corners, depths, number), &tests);
+                self.draw_scan_lines::<S, N>(simd, (corners, depths, number), tests);
                 continue;
             }
             let first = [self.bounds.left, self.bounds.top];
@@ -58,7 +60,7 @@ impl Visibility {
             let reach = reach(Coverage::F32Edges, self.sample_positions.reach::<N>());
             if let Some(area) = PixelBox::reached(at, reach).in_tile(self.bounds) {
                 let own = BlockTriangle::Floats(own);
-                self.draw_floats::<S, N>(simd, (&own, area), &tests);
+                self.draw_floats::<S, N>(simd, (&own, area), tests);
             }
         }
     }
@@ -69,7 +71,7 @@ impl Visibility {
         &mut self,
         simd: S,
         (triangle, area): (&BlockTriangle, PixelBox),
-        tests: &[Option<AlphaTest<'_, '_>>; N],
+        tests: &[Option<AlphaTest<'_, '_>>],
     ) {
         // Alpha-tested blocks are always written; others can be noted as fully covered.
         if tests[0].is_none() {
@@ -91,7 +93,7 @@ impl Visibility {
         &mut self,
         simd: S,
         (corners, depths, number): ([[f32; 2]; 3], [f32; 3], u32),
-        tests: &[Option<AlphaTest<'_, '_>>; N],
+        tests: &[Option<AlphaTest<'_, '_>>],
     ) {
         let format = Any(self.depth_format);
         for (sample, test) in tests.iter().enumerate() {
@@ -120,7 +122,7 @@ impl Visibility {
         level: Level,
         (plan, frame): (&FramePlan, &ScreenGeometry),
         number: u32,
-        tests: &[Option<AlphaTest<'_, '_>>; N],
+        tests: &[Option<AlphaTest<'_, '_>>],
     ) {
         let (draw, start) = frame.draw_of(number);
         let draw = &plan.draws[draw as usize];

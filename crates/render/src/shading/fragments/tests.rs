@@ -47,11 +47,11 @@ fn other_triangles_are_added_to_a_full_block() {
         let others = [number + 1, number + 2, number, number + 1];
         if number % 3 == 0 {
             // They have other slots in the table now.
-            fragments.begin_shared(0);
+            fragments.begin_shared(0, 4);
             others.iter().rev().for_each(|other| fragments.add(*other, [0, 0], 5, 1));
         }
         fragments.list_full_block(number, [8, 16]);
-        fragments.share(&[3; BLOCK_PIXELS]);
+        fragments.share(&[3; BLOCK_PIXELS], 4);
         others.iter().for_each(|other| fragments.add(*other, [8, 16], 9, 1));
         let shown = fragments.slots[..fragments.len].iter();
         let shown: Vec<u32> = shown.map(|slot| fragments.numbers[*slot as usize]).collect();
