@@ -57,7 +57,10 @@ impl Editor {
         let begun = Instant::now();
         while !done(self) {
             if begun.elapsed() > Duration::from_secs(20) {
-                let labels = self.harness.query_all_by(|_| true).filter_map(|node| node.accesskit_node().label());
+                let labels = self
+                    .harness
+                    .query_all_by(|_| true)
+                    .filter_map(|node| node.accesskit_node().label());
                 let shown: Vec<String> = labels.collect();
                 panic!("waited too long; the window shows: {}", shown.join(" | "));
             }
