@@ -218,11 +218,7 @@ impl Large {
             if covered == [0; 2] {
                 continue;
             }
-            let depth = self.depth_at(upper).narrow(self.depth_at(lower));
-            // Rounding must not move a depth beyond the depths of the corners.
-            let (low, high) = (f32x16::splat(simd, self.low), f32x16::splat(simd, self.high));
-            let depth = depth.simd_gt(low).select(depth, low);
-            let depth: f32x16<S> = depth.simd_lt(high).select(depth, high);
+            let depth = self.clamped(self.depth_at(upper).narrow(self.depth_at(lower)));
             let covered = (covered[0] & 0xff) | (covered[1] & 0xff) << 8;
             let mut covered = mask32x16::from_bitmask(simd, covered);
             // Holes and colours only matter in pixels that pass the depth test.
@@ -241,6 +237,60 @@ impl Large {
             }
             put_rows(format, simd, covered, depth, self.number, visibility);
         }
+    }
+
+    /// Draws the triangle into a block of the visibility buffer with several samples per pixel.
+    /// `whole` tells that it covers the block fully.
+    #[inline(always)]
+    pub(crate) fn draw_samples<S: Simd>(
+        &self,
+        format: impl Format,
+        simd: S,
+        block: usize,
+        whole: bool,
+        (positions, entries): (&SamplePositions, &mut [u64]),
+    ) {
+        let first = self.edges_at(block);
+        // Sixteen entries are some samples of neighbouring pixels of a row.
+        let gains: [[i64; 3]; 16] = std::array::from_fn(|lane| self.gain(positions.of_entry(lane)));
+        let row = |i: usize| gains.map(|gain| gain[i]);
+        let rows = [row(0), row(1), row(2)];
+        let upper = each(
+            rows,
+            #[inline(always)]
+            |row| i64x8::from_slice(simd, &row[..8]),
+        );
+        let lower = each(
+            rows,
+            #[inline(always)]
+            |row| i64x8::from_slice(simd, &row[8..]),
+        );
+        for (group, entries) in entries.as_chunks_mut::<16>().0.iter_mut().enumerate() {
+            let [x, y] = positions.pixel_of(group).map(i64::from);
+            let at = |i: usize| first[i] + x * self.right[i] + y * self.down[i];
+            let [a, b, c] = [at(0), at(1), at(2)];
+            let upper = [upper[0] + a, upper[1] + b, upper[2] + c];
+            let lower = [lower[0] + a, lower[1] + b, lower[2] + c];
+            let covered = match whole {
+                true => 0xffff,
+                false => (self.inside(upper) & 0xff) | (self.inside(lower) & 0xff) << 8,
+            };
+            if covered == 0 {
+                continue;
+            }
+            let depth = self.clamped(self.depth_at(upper).narrow(self.depth_at(lower)));
+            let covered = mask32x16::from_bitmask(simd, covered);
+            put_rows(format, simd, covered, depth, self.number, entries);
+        }
+    }
+
+    /// Clamps depths to those of the corners, because rounding must not move them beyond.
+    #[inline(always)]
+    fn clamped<S: Simd>(&self, depth: f32x16<S>) -> f32x16<S> {
+        let (low, high) =
+            (f32x16::splat(depth.simd, self.low), f32x16::splat(depth.simd, self.high));
+        let depth = depth.simd_gt(low).select(depth, low);
+        depth.simd_lt(high).select(depth, high)
     }
 
     #[inline(always)]

@@ -143,11 +143,12 @@ impl Layers {
     #[inline(always)]
     #[expect(clippy::cast_possible_truncation, reason = "the upper half is the depth")]
     fn add_hit(&mut self, place: usize, samples: usize, word: u64) {
-        let (plane, pixel) = (place / BLOCK_PIXELS, place % BLOCK_PIXELS);
-        self.touched |= 1 << (plane / samples);
+        let (sample, pixel) = (place % samples, place / samples);
+        let (block, pixel) = (pixel / BLOCK_PIXELS, pixel % BLOCK_PIXELS);
+        self.touched |= 1 << block;
         let [low, high] = depths_between(self.depth_format, [(word >> 32) as u32; 2]);
         self.depths = [self.depths[0].min(low), self.depths[1].max(high)];
-        self.hits[plane].push((pixel as u8, word));
+        self.hits[block * samples + sample].push((pixel as u8, word));
     }
 
     fn add_large(&mut self, level: Level, triangle: &LargeTriangle) {
@@ -226,7 +227,7 @@ impl Layers {
             let own = number - start.number;
             points::cover(plan, draw, own, (self.bounds, shift), &mut |x, y, depth| {
                 let (x, y) = (x - self.bounds.left, y - self.bounds.top);
-                let place = (block_at(x, y) * count + sample) * BLOCK_PIXELS + within(x, y);
+                let place = (block_at(x, y) * BLOCK_PIXELS + within(x, y)) * count + sample;
                 let key = Any(self.depth_format).key(depth);
                 let nearest: &mut u32 = all.entry(place).or_default();
                 *nearest = key.max(*nearest);

@@ -434,7 +434,8 @@ mod tests {
             let [a, b] = ends.map(|ends| end(ends).map(|x| i32x16::splat(simd, x)));
             let depth = i32x16::splat(simd, 0.5_f32.to_bits().cast_signed());
             let some = mask32x16::from_bitmask(simd, 1 << 5);
-            let short = Short { some, number: u32x16::splat(simd, 0), width, nearer: 0, sample: (0, 1) };
+            let number = u32x16::splat(simd, 0);
+            let short = Short { some, number, width, nearer: 0, sample: (0, 1) };
             draw_short([a[0], a[1], depth], [b[0], b[1], depth], &short, &mut hits);
         });
         let mut pixels = Vec::new();

@@ -153,22 +153,21 @@ impl<S: Simd> Medium<S> {
         touched
     }
 
-    /// Draws the triangle into the rows of a block that `area` reaches into, for the sample with
-    /// this offset, and paints the pixels that pass the depth test. `area` is in pixels relative to
-    /// the tile's first.
+    /// Draws the triangle into the rows of a block that `area` reaches into, and paints the pixels
+    /// that pass the depth test. `area` is in pixels relative to the tile's first.
     #[inline(always)]
     pub(crate) fn draw(
         &self,
         format: impl Format,
         simd: S,
-        (block, shift): (usize, [i32; 2]),
+        block: usize,
         area: PixelBox,
         mut painted: Option<Painted<'_>>,
         visibility: &mut [u64; BLOCK_PIXELS],
     ) {
         let block = i32::try_from(block % BLOCK_PIXELS).unwrap_or(0);
         let (column, row) = (block % BLOCK * BLOCK, block / BLOCK * BLOCK);
-        let place = [column * SUBPIXELS + shift[0], row * SUBPIXELS + shift[1]];
+        let place = [column * SUBPIXELS, row * SUBPIXELS];
         let gain = [self.gain(0, place), self.gain(1, place), self.gain(2, place)];
         let (pairs, _) = visibility.as_chunks_mut::<16>();
         // Rows above and below the area are skipped, which matters for small triangles.
@@ -195,6 +194,44 @@ impl<S: Simd> Medium<S> {
                 put_rows(format, simd, covered, depth, self.number, entries);
             }
             (a, b, c) = (a + two_down(0), b + two_down(1), c + two_down(2));
+        }
+    }
+
+    /// Draws the triangle into the pixels of a block that `area` reaches into, with several samples
+    /// per pixel. `area` is in pixels relative to the tile's first.
+    #[inline(always)]
+    pub(crate) fn draw_samples(
+        &self,
+        format: impl Format,
+        simd: S,
+        block: usize,
+        area: PixelBox,
+        (positions, entries): (&SamplePositions, &mut [u64]),
+    ) {
+        let block = i32::try_from(block % BLOCK_PIXELS).unwrap_or(0);
+        let (column, row) = (block % BLOCK * BLOCK, block / BLOCK * BLOCK);
+        // Sixteen entries are some samples of neighbouring pixels of a row.
+        let [x, y] = positions.of_entries(simd);
+        let (right, down) = (self.right, self.down);
+        let gains =
+            [x * right[0] + y * down[0], x * right[1] + y * down[1], x * right[2] + y * down[2]];
+        let across = positions.pixels_across();
+        let (left, right) = ((area.left - column).max(0), (area.right - column).min(BLOCK));
+        for y in (area.top - row).max(0)..(area.bottom - row).min(BLOCK) {
+            for x in (left - left % across..right).step_by(across as usize) {
+                let place = [(column + x) * SUBPIXELS, (row + y) * SUBPIXELS];
+                let at = |i: usize| self.edges[i] + self.gain(i, place);
+                let [a, b, c] = [gains[0] + at(0), gains[1] + at(1), gains[2] + at(2)];
+                let covered = (a | b | c).simd_ge(0);
+                if !covered.any_true() {
+                    continue;
+                }
+                let depth = self.depths(simd, b + self.least[0], c + self.least[1]);
+                let first = (y * BLOCK + x) as usize * positions.count();
+                if let Some(entries) = entries[first..].first_chunk_mut() {
+                    put_rows(format, simd, covered, depth, self.number, entries);
+                }
+            }
         }
     }
 

@@ -159,7 +159,7 @@ impl<S: Simd, E: Edges<S>> SampledLanes<S, E> {
         &self,
         within: PixelBox,
         covered: &mut Covered,
-        take: impl FnMut(&CoveredPixels<S>, usize),
+        take: impl FnMut(&CoveredPixels<S, E>, usize),
     ) {
         let Self { lanes, shifts, samples } = self;
         lanes.scan(&shifts[..*samples], covered);
@@ -172,7 +172,7 @@ impl<S: Simd, E: Edges<S>> SampledLanes<S, E> {
 
     /// Returns the depths of pixels in one of their samples.
     #[inline(always)]
-    pub(super) fn depths(&self, of: &CoveredPixels<S>, sample: usize) -> f32x16<S> {
+    pub(super) fn depths(&self, of: &CoveredPixels<S, E>, sample: usize) -> f32x16<S> {
         self.lanes.depths(of, Some(&self.shifts[sample % MANY]))
     }
 }
@@ -313,7 +313,7 @@ impl<S: Simd, E: Edges<S>> Lanes<S, E> {
 
     /// Calls `take` with the pixels of a list, sixteen at a time, and their number.
     #[inline(always)]
-    fn each_pixel(&self, covered: &Covered, mut take: impl FnMut(&CoveredPixels<S>, usize)) {
+    fn each_pixel(&self, covered: &Covered, mut take: impl FnMut(&CoveredPixels<S, E>, usize)) {
         for at in (0..covered.count).step_by(PACK) {
             let pixels = i32x16::from_slice(self.left.simd, &covered.pixels[at..at + PACK]);
             // A lane is now a pixel of the list; the numbers of its triangle are permuted into it.
@@ -324,15 +324,16 @@ impl<S: Simd, E: Edges<S>> Lanes<S, E> {
             let [x, y] = self.place(pixels);
             let number = permute(self.number.bitcast(), lanes).bitcast();
             let samples = pixels >> SAMPLES;
-            let own = CoveredPixels { lanes, by, x, y, number, low, high, samples };
+            let edges = self.edges.pixels(lanes, by);
+            let own = CoveredPixels { lanes, by, x, y, number, edges, low, high, samples };
             take(&own, (covered.count - at).min(PACK));
         }
     }
 
     /// Returns the depths of pixels at a sample with this offset, or at their centres.
     #[inline(always)]
-    fn depths(&self, of: &CoveredPixels<S>, shift: Option<&E::Shift>) -> f32x16<S> {
-        let linear = self.edges.depths((of.lanes, of.by, shift));
+    fn depths(&self, of: &CoveredPixels<S, E>, shift: Option<&E::Shift>) -> f32x16<S> {
+        let linear = self.edges.depths(&of.edges, (of.lanes, shift));
         // Clamped to the depths of the corners.
         let linear = linear.simd_gt(of.low).select(linear, of.low);
         linear.simd_lt(of.high).select(linear, of.high)
@@ -340,8 +341,7 @@ impl<S: Simd, E: Edges<S>> Lanes<S, E> {
 }
 
 /// Sixteen pixels covered by some of sixteen triangles in any sample.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct CoveredPixels<S: Simd> {
+pub(super) struct CoveredPixels<S: Simd, E: Edges<S>> {
     /// The lanes of the pixels' triangles.
     lanes: i32x16<S>,
     /// The distances from the first pixels of the boxes.
@@ -350,6 +350,8 @@ pub(super) struct CoveredPixels<S: Simd> {
     pub(super) y: i32x16<S>,
     /// The numbers of the triangles.
     pub(super) number: u32x16<S>,
+    /// What depths are computed from.
+    edges: E::Pixels,
     /// The smallest and largest depths of the corners.
     low: f32x16<S>,
     high: f32x16<S>,
@@ -357,7 +359,7 @@ pub(super) struct CoveredPixels<S: Simd> {
     samples: i32x16<S>,
 }
 
-impl<S: Simd> CoveredPixels<S> {
+impl<S: Simd, E: Edges<S>> CoveredPixels<S, E> {
     /// Returns which of the first `count` pixels are covered in one of several samples.
     #[inline(always)]
     pub(super) fn covered(&self, sample: usize, count: usize) -> mask32x16<S> {

@@ -40,6 +40,8 @@ pub(crate) trait Edges<S: Simd>: Copy {
     type At: Copy;
     /// The change of the values by the offset of a sample.
     type Shift: Copy;
+    /// What the depths of pixels are computed from.
+    type Pixels;
     /// The grid of corners.
     const GRID: Grid = Grid::Usual;
     /// Whether hits have colours by this rule.
@@ -74,20 +76,47 @@ pub(crate) trait Edges<S: Simd>: Copy {
     fn covered(&self, at: Self::At) -> mask32x16<S>;
     /// Returns the edge function of corner `i` at some pixels.
     fn function(&self, i: usize, at: Places<'_, S, Self::Shift>) -> f32x16<S>;
-    /// Returns the depths at some pixels, linear on the screen.
-    fn depths(&self, at: Places<'_, S, Self::Shift>) -> f32x16<S>;
+    /// Prepares depths at some pixels: the lanes of their triangles, and their distances from the
+    /// first pixels of the boxes.
+    fn pixels(&self, lanes: i32x16<S>, by: [i32x16<S>; 2]) -> Self::Pixels;
+    /// Returns the depths at pixels, linear on the screen, or at samples of theirs. Takes the lanes
+    /// of their triangles again.
+    fn depths(&self, pixels: &Self::Pixels, at: (i32x16<S>, Option<&Self::Shift>)) -> f32x16<S>;
 }
 
-/// Computes depths in f32, from the depth of the first corner and its growth with the edge
-/// functions of the others.
-#[inline(always)]
-fn linear_depths<S: Simd, E: Edges<S>>(
-    edges: &E,
-    [depth, to_second, to_third]: [f32x16<S>; 3],
-    at: Places<'_, S, E::Shift>,
-) -> f32x16<S> {
-    let (second, third) = (edges.function(1, at), edges.function(2, at));
-    let (lanes, ..) = at;
-    let (to_second, to_third) = (of_lanes(to_second, lanes), of_lanes(to_third, lanes));
-    of_lanes(depth, lanes) + second * to_second + third * to_third
+/// Depths in f32 at some pixels: their second and third edge functions, the depth of the first
+/// corner, and its growth with these functions.
+#[derive(Clone, Copy)]
+pub(crate) struct LinearDepths<S: Simd> {
+    edges: [f32x16<S>; 2],
+    depth: f32x16<S>,
+    growth: [f32x16<S>; 2],
+}
+
+impl<S: Simd> LinearDepths<S> {
+    #[inline(always)]
+    fn new<E: Edges<S>>(
+        edges: &E,
+        [depth, second, third]: [f32x16<S>; 3],
+        at: Places<'_, S, E::Shift>,
+    ) -> Self {
+        let (lanes, ..) = at;
+        Self {
+            edges: [edges.function(1, at), edges.function(2, at)],
+            depth: of_lanes(depth, lanes),
+            growth: [of_lanes(second, lanes), of_lanes(third, lanes)],
+        }
+    }
+
+    #[inline(always)]
+    fn at_pixels(&self) -> f32x16<S> {
+        let ([second, third], [to_second, to_third]) = (self.edges, self.growth);
+        self.depth + second * to_second + third * to_third
+    }
+
+    /// Moves the pixels to samples that change the edge functions by this.
+    #[inline(always)]
+    fn moved(&self, [second, third]: [f32x16<S>; 2]) -> Self {
+        Self { edges: [self.edges[0] + second, self.edges[1] + third], ..*self }
+    }
 }

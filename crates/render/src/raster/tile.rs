@@ -16,9 +16,9 @@
 //! triangle is noted, and no depths are computed until another primitive comes near. Bounds of each
 //! block's depths skip hidden triangles early, as in hierarchical Z.
 //!
-//! With several samples per pixel, a block has a plane of entries for each. A primitive
-//! covers a sample if it covers the centre of the pixel after the primitive is moved by the
-//! sample's offset.
+//! With several samples per pixel, a pixel has an entry for each, side by side. A primitive covers
+//! a sample if it covers the centre of the pixel after the primitive is moved by the sample's
+//! offset.
 
 use crate::simd::dispatch;
 use fearless_simd::{Level, Simd};
@@ -41,8 +41,8 @@ use crate::screen::sample_positions::{MANY, SamplePositions};
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, BLOCKS, PIXELS, block_at, within};
 use marraztu_core::accuracy::{Coverage, DepthFormat};
 
-/// The visibility buffer of one tile: block by block, each block sample by sample, each sample row
-/// by row.
+/// The visibility buffer of one tile: block by block, each block row by row, each pixel sample by
+/// sample.
 #[derive(Debug)]
 pub(crate) struct Visibility {
     buffer: Box<Buffer>,
@@ -201,10 +201,10 @@ impl Visibility {
         &self.buffer.0.as_chunks().0[block]
     }
 
-    /// Returns the entries of a block that shows something, sample by sample.
-    pub(crate) fn planes(&self, block: usize) -> &[Plane] {
-        let count = self.sample_positions.count();
-        &self.buffer.0.as_chunks().0[block * count..][..count]
+    /// Returns the entries of all samples of a block that shows something, pixel by pixel.
+    pub(crate) fn samples_of(&self, block: usize) -> &[u64] {
+        let count = self.sample_positions.count() * BLOCK_PIXELS;
+        &self.buffer.0[block * count..][..count]
     }
 
     /// Returns the farthest and nearest depth of all visible triangles. `None` if no triangle is
@@ -216,7 +216,7 @@ impl Visibility {
             let [own_low, own_high] = if self.whole(block).is_some() {
                 [self.farthest[block], self.nearest[block]]
             } else {
-                dispatch!(level, simd => depths_of(simd, self.planes(block).as_flattened()))
+                dispatch!(level, simd => depths_of(simd, self.samples_of(block)))
             };
             (low, high) = (low.min(own_low), high.max(own_high));
         }
@@ -233,15 +233,14 @@ impl Visibility {
     pub(crate) fn samples(&mut self, level: Level, x: i32, y: i32) -> ([u64; MANY], usize) {
         let (x, y) = (x - self.bounds.left, y - self.bounds.top);
         let block = block_at(x, y);
-        let mut samples = [0; MANY];
+        let (mut samples, count) = ([0; MANY], self.sample_positions.count());
         if self.shows(block) {
             // A fully covered block gets its entries only now.
             self.write_samples(level, block);
-            for (word, plane) in samples.iter_mut().zip(self.planes(block)) {
-                *word = plane[within(x, y)];
-            }
+            let own = &self.samples_of(block)[within(x, y) * count..][..count];
+            samples[..count].copy_from_slice(own);
         }
-        (samples, self.sample_positions.count())
+        (samples, count)
     }
 
     /// Returns the entries of a block for one of its samples; 0 in pixels without an opaque
@@ -256,7 +255,7 @@ impl Visibility {
             return [0; BLOCK_PIXELS];
         }
         self.write_samples(level, block);
-        self.planes(block)[sample]
+        plane_of(self.samples_of(block), self.sample_positions.count(), sample)
     }
 
     /// Makes the entries of a block valid for the samples of the pass.
@@ -267,17 +266,15 @@ impl Visibility {
         }
     }
 
-    /// Makes the entries of a block valid for up to `N` samples per pixel, before something is drawn into
-    /// it. Drops the block's colours.
+    /// Makes the entries of a block valid for up to `N` samples per pixel, before something is
+    /// drawn into it. Drops the block's colours.
     #[inline(always)]
     fn write<const N: usize>(&mut self, level: Level, block: usize) {
         let bit = 1 << block;
         self.colored &= !bit;
         if self.written & bit == 0 {
             self.written |= bit;
-            for sample in 0..self.sample_positions.count_in::<N>() {
-                self.plane::<N>(block, sample).fill(0);
-            }
+            self.entries_mut::<N>(block).fill(0);
             // The triangle that was only noted comes first.
             if self.whole & bit != 0 {
                 self.expand::<N>(level, block);
@@ -290,32 +287,63 @@ impl Visibility {
     fn expand<const N: usize>(&mut self, level: Level, block: usize) {
         self.whole &= !(1 << block);
         let triangle = self.large[self.shown[block] as usize];
-        self.draw_planes::<N>(level, &triangle, block, true);
+        self.draw_block::<N>(level, &triangle, block, true);
     }
 
-    /// Returns the entries of a block for one of up to `N` samples.
+    /// Returns the entries of a block, pixel by pixel, with up to `N` samples each.
     #[inline(always)]
-    fn plane<const N: usize>(&mut self, block: usize, sample: usize) -> &mut Plane {
+    fn entries_mut<const N: usize>(&mut self, block: usize) -> &mut [u64] {
+        let count = self.sample_positions.count_in::<N>() * BLOCK_PIXELS;
+        &mut self.buffer.0[block * count..][..count]
+    }
+
+    /// Draws into the entries of a block for one of up to `N` samples.
+    #[inline(always)]
+    fn draw_plane<const N: usize>(
+        &mut self,
+        block: usize,
+        sample: usize,
+        draw: impl FnOnce(&mut Plane),
+    ) {
         let count = self.sample_positions.count_in::<N>();
-        &mut self.buffer.0.as_chunks_mut().0[block * count + sample]
+        let entries = self.entries_mut::<N>(block);
+        if N == 1 {
+            if let Some(plane) = entries.first_chunk_mut() {
+                draw(plane);
+            }
+            return;
+        }
+        let mut plane = plane_of(entries, count, sample);
+        draw(&mut plane);
+        for (entry, new) in entries.iter_mut().skip(sample).step_by(count).zip(plane) {
+            *entry = new;
+        }
     }
 
     /// Draws a triangle into a block that it covers fully or partly.
     #[inline(never)]
-    fn draw_planes<const N: usize>(
+    fn draw_block<const N: usize>(
         &mut self,
         level: Level,
         triangle: &BlockTriangle,
         block: usize,
         whole: bool,
     ) {
-        let (sample_positions, format) = (self.sample_positions, self.depth_format);
-        dispatch!(level, simd => for sample in 0..sample_positions.count_in::<N>() {
-            let shift = sample_positions.shift::<N>(sample);
-            let plane = self.plane::<N>(block, sample);
-            with_format!(format, D => {
+        let (positions, format) = (self.sample_positions, self.depth_format);
+        if N > 1
+            && let BlockTriangle::Large(large) = triangle
+        {
+            let of = (&positions, self.entries_mut::<N>(block));
+            dispatch!(level, simd => with_format!(format, D => {
+                large.draw_samples(D::of(format), simd, block, whole, of);
+            }));
+            return;
+        }
+        dispatch!(level, simd => for sample in 0..positions.count_in::<N>() {
+            let shift = positions.shift::<N>(sample);
+            self.draw_plane::<N>(block, sample, |plane| with_format!(format, D => {
                 triangle.draw(D::of(format), simd, (block, shift), whole, None, plane);
-            });
+            }));
         });
     }
 
@@ -329,8 +357,8 @@ impl Visibility {
     ) {
         let (x, y) = (x - self.bounds.left, y - self.bounds.top);
         self.write::<N>(level, block_at(x, y));
-        let word = word(key, number);
-        let old = &mut self.plane::<N>(block_at(x, y), sample)[within(x, y)];
+        let (word, count) = (word(key, number), self.sample_positions.count_in::<N>());
+        let old = &mut self.entries_mut::<N>(block_at(x, y))[within(x, y) * count + sample];
         *old = word.max(*old);
     }
 
@@ -404,6 +432,12 @@ impl Visibility {
             }
         }
     }
+}
+
+/// Returns the entries of a block for one of its samples.
+#[inline(always)]
+fn plane_of(entries: &[u64], count: usize, sample: usize) -> Plane {
+    std::array::from_fn(|pixel| entries[pixel * count + sample])
 }
 
 mod cutout_fragments;

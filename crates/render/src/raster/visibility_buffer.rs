@@ -23,11 +23,17 @@ pub(crate) enum Visible {
 /// The number of the background, which has the entry 0.
 pub(crate) const BACKGROUND: u32 = u32::MAX;
 
-/// Returns the primitive of an entry.
+/// Returns the number of the primitive of an entry.
 #[inline(always)]
 #[expect(clippy::cast_possible_truncation, reason = "the lower half is meant")]
+pub(crate) const fn number_of(word: u64) -> u32 {
+    !(word as u32)
+}
+
+/// Returns the primitive of an entry.
+#[inline(always)]
 pub(crate) const fn seen(word: u64) -> Visible {
-    seen_number(!(word as u32))
+    seen_number(number_of(word))
 }
 
 /// Returns the primitive with a number. The background's number belongs to no line.

@@ -8,6 +8,10 @@
 //! Four and sixteen samples are at Vulkan's "Standard sample locations", multiples of 1/16 pixel;
 //! sixty-four and 256 are on a grid of 8 x 8 and 16 x 16.
 
+use fearless_simd::{Simd, SimdBase as _, i32x16};
+
+use crate::screen::coverage::SUBPIXELS;
+use crate::screen::tiles::BLOCK;
 use marraztu_core::accuracy::Samples;
 
 /// The largest number of samples in a pass. Kernels are compiled for one sample, at the centre, and
@@ -87,6 +91,36 @@ impl SamplePositions {
     #[inline(always)]
     pub(crate) const fn shift<const N: usize>(&self, i: usize) -> [i32; 2] {
         if N == 1 { [0; 2] } else { self.shifts[i % MANY] }
+    }
+
+    /// Returns the number of neighbouring pixels of a row with sixteen samples together; for
+    /// several samples.
+    #[inline(always)]
+    pub(crate) const fn pixels_across(&self) -> i32 {
+        (MANY / self.count) as i32
+    }
+
+    /// Returns the column and row in a block of the first of [`Self::pixels_across`] pixels.
+    #[inline(always)]
+    pub(crate) const fn pixel_of(&self, group: usize) -> [i32; 2] {
+        let pixel = group as i32 * self.pixels_across();
+        [pixel % BLOCK, pixel / BLOCK]
+    }
+
+    /// Returns the offset of an entry of the visibility buffer, out of sixteen neighbours, from the
+    /// centre of their first pixel, in subpixels.
+    #[inline(always)]
+    pub(crate) const fn of_entry(&self, lane: usize) -> [i32; 2] {
+        let [x, y] = self.shifts[lane % self.count % MANY];
+        [x + (lane / self.count) as i32 * SUBPIXELS, y]
+    }
+
+    /// Returns the offsets of sixteen entries, along x and along y. See [`Self::of_entry`].
+    #[inline(always)]
+    pub(crate) fn of_entries<S: Simd>(&self, simd: S) -> [i32x16<S>; 2] {
+        let all: [[i32; 2]; MANY] = std::array::from_fn(|lane| self.of_entry(lane));
+        let (x, y) = (all.map(|at| at[0]), all.map(|at| at[1]));
+        [i32x16::from_slice(simd, &x), i32x16::from_slice(simd, &y)]
     }
 
     /// Returns the smallest and largest offset on each axis.

@@ -1,7 +1,7 @@
 //! The layout of tiles, blocks and the visibility buffer.
 //!
 //! A tile has 64 x 64 pixels, a block 8 x 8. The visibility buffer of a tile is stored block by
-//! block, each block sample by sample, and each sample row by row.
+//! block, each block row by row, and each pixel sample by sample.
 
 use fearless_simd::{Simd, i32x16};
 
@@ -50,6 +50,6 @@ pub(crate) fn lanes_place<S: Simd>(
 ) -> i32x16<S> {
     // Shifts and masks divide by 8: the block, and the place in it.
     let block = ((y >> 3) << 3) + (x >> 3);
-    let first = (block * (samples * BLOCK_PIXELS) as i32) + (sample * BLOCK_PIXELS) as i32;
-    first + ((y & 7) << 3) + (x & 7)
+    let pixel = (block * BLOCK_PIXELS as i32) + ((y & 7) << 3) + (x & 7);
+    pixel * samples as i32 + sample as i32
 }

@@ -317,17 +317,16 @@ impl<T: ShadingNumber> Painter<T> {
         fill: Option<Color>,
     ) -> bool {
         let Self { shader, visibility, samples, .. } = self;
-        let planes = visibility.planes(block);
+        let count = context.frame.sample_positions().count();
         // If the samples of each pixel agree, the block costs no more than with one sample.
-        if samples.compare(context.level, planes) {
-            return shader.block_later(context, &planes[0], corner, (canvas, at), fill);
+        if samples.compare(context.level, visibility.samples_of(block), count) {
+            return shader.block_later(context, &samples.first, corner, (canvas, at), fill);
         }
         // Separate samples need the fragment list, so waiting blocks are coloured before.
         shader.finish_waiting(context, canvas);
         let mut sums = Sums::new(context.plan.variants.are_linear());
-        let of = (&mut *samples, &planes[0]);
-        let shows = shader.add_samples(context, of, corner, (&mut sums, None));
-        canvas.put(at, &sums.means(planes.len().ilog2()));
+        let shows = shader.add_samples(context, samples, corner, (&mut sums, None));
+        canvas.put(at, &sums.means(count.ilog2()));
         shows
     }
 
@@ -396,10 +395,9 @@ impl<T: ShadingNumber> Painter<T> {
                 shader.color_group(&group_of(context, number), &mut out);
             }
         } else {
-            let planes = visibility.planes(block);
-            samples.compare(context.level, planes);
-            let of = (&mut *samples, &planes[0]);
-            shader.add_samples(context, of, corner, (sums, Some(kept)));
+            let count = context.frame.sample_positions().count();
+            samples.compare(context.level, visibility.samples_of(block), count);
+            shader.add_samples(context, samples, corner, (sums, Some(kept)));
         }
     }
 

@@ -6,7 +6,7 @@
 //! fit.
 
 use crate::simd::dispatch;
-use fearless_simd::{Level, Select as _, Simd, SimdBase as _, SimdMask as _, i32x16, u32x16};
+use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, u32x16};
 
 use super::colors::{Colors, Sums};
 use super::context::{ShadingContext, one_group};
@@ -14,7 +14,7 @@ use super::interpolated::ShadingNumber;
 use super::runs::Shown;
 use super::surface::{Out, Shader};
 use crate::raster::entries::keys_and_numbers;
-use crate::raster::visibility_buffer::{BACKGROUND, Plane, Visible, seen, seen_number};
+use crate::raster::visibility_buffer::{BACKGROUND, Plane, Visible, number_of, seen, seen_number};
 use crate::screen::sample_positions::MANY;
 use crate::screen::tiles::BLOCK_PIXELS;
 use crate::simd::{BATCH, Bits};
@@ -22,9 +22,9 @@ use crate::simd::{BATCH, Bits};
 /// The primitives that the samples of a block's pixels show.
 #[derive(Debug)]
 pub(crate) struct Samples {
-    /// The primitives of the first samples.
-    first: [u32; BLOCK_PIXELS],
-    /// The number of samples that show them.
+    /// The entries of the first samples.
+    pub(crate) first: Plane,
+    /// The number of samples that show the same primitive.
     shares: [i32; BLOCK_PIXELS],
     /// The other primitives of all pixels.
     others: Vec<Other>,
@@ -46,50 +46,50 @@ impl Default for Samples {
 }
 
 impl Samples {
-    /// Compares the samples of each pixel. Returns whether each pixel shows a single primitive.
-    pub(crate) fn compare(&mut self, level: Level, planes: &[Plane]) -> bool {
-        dispatch!(level, simd => self.compare_in(simd, planes));
+    /// Compares the entries of each pixel of a block, which has `count` side by side. Returns
+    /// whether each pixel shows a single primitive.
+    pub(crate) fn compare(&mut self, level: Level, entries: &[u64], count: usize) -> bool {
+        self.others.clear();
+        self.shares.fill(i32::try_from(count).unwrap_or(0));
+        dispatch!(level, simd => match count {
+            4 => self.compare_in::<_, 4>(simd, entries),
+            _ => self.compare_in::<_, MANY>(simd, entries),
+        });
         self.others.is_empty()
     }
 
     #[inline(always)]
-    fn compare_in<S: Simd>(&mut self, simd: S, planes: &[Plane]) {
-        self.others.clear();
-        let (none, one) = (i32x16::splat(simd, 0), i32x16::splat(simd, 1));
-        for at in (0..BLOCK_PIXELS).step_by(16) {
-            let numbers = |plane: &Plane| keys_and_numbers(simd, &plane[at..at + 16]).1;
-            let [first, others @ ..] = planes else { return };
-            let first = numbers(first);
-            let mut shares = one;
-            for other in others {
-                shares += numbers(other).simd_eq(first).select(one, none);
+    #[expect(clippy::cast_possible_truncation, reason = "the lower half of a word is the number")]
+    fn compare_in<S: Simd, const N: usize>(&mut self, simd: S, entries: &[u64]) {
+        for (place, samples) in entries.as_chunks::<N>().0.iter().enumerate() {
+            let place = place % BLOCK_PIXELS;
+            self.first[place] = samples[0];
+            // Numbers differ in the bits that some samples have and others have not.
+            let mut differ = 0;
+            for sample in &samples[1..] {
+                differ |= sample ^ samples[0];
             }
-            first.store_slice(&mut self.first[at..at + 16]);
-            shares.store_slice(&mut self.shares[at..at + 16]);
-            let all = i32::try_from(planes.len()).unwrap_or(0);
-            for lane in Bits(shares.simd_lt(all).to_bitmask()) {
-                self.list_others(simd, planes, at + lane);
+            if differ as u32 != 0 {
+                self.list_others(simd, samples, place);
             }
         }
     }
 
     /// Lists the primitives of a pixel that its first sample does not show.
     #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, reason = "the lower half of a word is the number")]
-    fn list_others<S: Simd>(&mut self, simd: S, planes: &[Plane], place: usize) {
-        let place = place % BLOCK_PIXELS;
-        // Samples beyond the last repeat the first, which is not listed.
-        let mut numbers = [self.first[place]; MANY];
-        for (number, plane) in numbers.iter_mut().zip(planes) {
-            *number = !(plane[place] as u32);
-        }
-        let all = u32x16::from_slice(simd, &numbers);
-        let mut left = !all.simd_eq(numbers[0]).to_bitmask() & 0xffff;
+    fn list_others<S: Simd, const N: usize>(&mut self, simd: S, samples: &[u64; N], place: usize) {
+        // Samples beyond the last show what the first shows, and do not count.
+        let mut entries = [samples[0]; MANY];
+        entries[..N].copy_from_slice(samples);
+        let (_, numbers) = keys_and_numbers(simd, &entries);
+        let of_samples = (1 << N) - 1;
+        let mut same = numbers.simd_eq(number_of(samples[0])).to_bitmask() & of_samples;
+        self.shares[place] = same.count_ones().cast_signed();
+        let mut left = of_samples & !same;
         while left != 0 {
-            let number = numbers[left.trailing_zeros() as usize % MANY];
-            let same = all.simd_eq(number).to_bitmask();
-            let share = same.count_ones().cast_signed();
-            self.others.push(Other { place, number, share });
+            let number = number_of(entries[left.trailing_zeros() as usize % MANY]);
+            same = numbers.simd_eq(number).to_bitmask() & left;
+            self.others.push(Other { place, number, share: same.count_ones().cast_signed() });
             left &= !same;
         }
     }
@@ -97,7 +97,7 @@ impl Samples {
     /// Adds the cached colours of earlier passes. Returns the pixels whose first primitive was not
     /// lit in an earlier pass; other primitives that were are removed.
     fn add_kept(&mut self, level: Level, kept: &Kept, sums: &mut Sums) -> u64 {
-        let known = kept.known(level, &self.first);
+        let known = kept.known(level, &self.first.map(number_of));
         if known != 0 {
             // Pixels without a cached colour get a share of 0 instead of a branch.
             let bit = |place: usize| i32::from(known >> place & 1 == 1);
@@ -185,7 +185,7 @@ impl<T: ShadingNumber> Shader<T> {
     pub(crate) fn add_samples(
         &mut self,
         context: &ShadingContext<'_, T>,
-        (samples, first): (&mut Samples, &Plane),
+        samples: &mut Samples,
         corner: [i32; 2],
         (sums, mut kept): (&mut Sums, Option<&mut Kept>),
     ) -> bool {
@@ -198,6 +198,7 @@ impl<T: ShadingNumber> Shader<T> {
             return false;
         }
         // Pixels lit in earlier passes become empty entries.
+        let first = &samples.first;
         let entry = |place: usize| first[place] & (unlit >> place & 1).wrapping_neg();
         let masked = kept.is_some().then(|| std::array::from_fn(entry));
         let entries = masked.as_ref().unwrap_or(first);
@@ -210,8 +211,7 @@ impl<T: ShadingNumber> Shader<T> {
         }
         // Lines and background need no light.
         for place in Bits(unlit & !shown.triangles) {
-            let (number, share) = (samples.first[place], samples.shares[place]);
-            add_other(context, seen_number(number), place, share, sums);
+            add_other(context, seen(first[place]), place, samples.shares[place], sums);
         }
         let mut first = self.fragments.len;
         let mut color = |shader: &mut Self, sums: &mut Sums| {
@@ -320,36 +320,34 @@ mod tests {
     fn every_sample_counts_once_with_the_first_that_shows_the_same() {
         let mut state = 1_u64;
         for round in 0..500 {
-            let samples_per_pixel = if round % 2 == 0 { 4 } else { MANY };
-            let planes: Vec<Plane> = (0..samples_per_pixel)
-                .map(|_| {
-                    std::array::from_fn(|_| {
-                        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-                        match state >> 62 {
-                            0 => 0,
-                            number => {
-                                (state >> 20) << 32 | u64::from(!u32::try_from(number).unwrap())
-                            }
-                        }
-                    })
-                })
-                .collect();
-            let number = |sample: usize, place: usize| !(planes[sample][place] as u32);
+            let count = if round % 2 == 0 { 4 } else { MANY };
+            let mut entry = || {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                match state >> 62 {
+                    0 => 0,
+                    number => (state >> 20) << 32 | u64::from(!u32::try_from(number).unwrap()),
+                }
+            };
+            let mut entries: Vec<u64> = (0..count * BLOCK_PIXELS).map(|_| entry()).collect();
+            // In some blocks, the samples of a pixel differ only in their depths.
+            if round % 10 < 2 {
+                for pixel in entries.chunks_mut(count) {
+                    let number = pixel[0] & u64::from(u32::MAX);
+                    pixel.iter_mut().for_each(|it| *it = *it >> 32 << 32 | number);
+                }
+            }
             let mut samples = Samples::default();
-            let alike = samples.compare(Level::new(), &planes);
+            let alike = samples.compare(Level::new(), &entries, count);
             let mut want = Vec::new();
-            for place in 0..BLOCK_PIXELS {
-                let shows = |own: u32| {
-                    (0..planes.len()).filter(|sample| number(*sample, place) == own).count() as i32
-                };
-                assert_eq!(samples.first[place], number(0, place));
-                assert_eq!(samples.shares[place], shows(number(0, place)));
-                let mut seen = vec![number(0, place)];
-                for sample in 1..planes.len() {
-                    let own = number(sample, place);
-                    if !seen.contains(&own) {
-                        seen.push(own);
-                        want.push((place, own, shows(own)));
+            for (place, pixel) in entries.chunks(count).enumerate() {
+                let numbers: Vec<u32> = pixel.iter().map(|word| number_of(*word)).collect();
+                let shows =
+                    |own: u32| numbers.iter().filter(|number| **number == own).count() as i32;
+                assert_eq!(samples.first[place], pixel[0]);
+                assert_eq!(samples.shares[place], shows(numbers[0]));
+                for (sample, own) in numbers.iter().enumerate() {
+                    if !numbers[..sample].contains(own) && sample > 0 {
+                        want.push((place, *own, shows(*own)));
                     }
                 }
             }

@@ -6,7 +6,7 @@ use fearless_simd::{
     mask32x16,
 };
 
-use super::{Boxes, Corners, Edges, Places, UsualEdges, linear_depths};
+use super::{Boxes, Corners, Edges, LinearDepths, Places, UsualEdges};
 use crate::raster::beyond::reach;
 use crate::screen::coverage::SUBPIXELS;
 use crate::simd::gather::of_lanes;
@@ -36,6 +36,7 @@ impl<S: Simd> Edges<S> for FloatEdges<S> {
     /// The position of the sample.
     type At = [f32x16<S>; 2];
     type Shift = [f32; 2];
+    type Pixels = [i32x16<S>; 2];
     const COLORED: bool = false;
 
     #[inline(always)]
@@ -114,8 +115,17 @@ impl<S: Simd> Edges<S> for FloatEdges<S> {
     }
 
     #[inline(always)]
-    fn depths(&self, at: Places<'_, S, Self::Shift>) -> f32x16<S> {
-        linear_depths(self, self.gradients, at)
+    fn pixels(&self, _: i32x16<S>, by: [i32x16<S>; 2]) -> Self::Pixels {
+        by
+    }
+
+    #[inline(always)]
+    fn depths(
+        &self,
+        by: &Self::Pixels,
+        (lanes, shift): (i32x16<S>, Option<&Self::Shift>),
+    ) -> f32x16<S> {
+        LinearDepths::new(self, self.gradients, (lanes, *by, shift)).at_pixels()
     }
 }
 

@@ -1,9 +1,9 @@
 //! Edge functions on the usual grid, in f32: integers below 2^24 are exact, and no edge function in
 //! a box of 8 x 8 pixels is larger.
 
-use fearless_simd::{Select as _, Simd, SimdBase as _, SimdInt as _, f32x16, mask32x16};
+use fearless_simd::{Select as _, Simd, SimdBase as _, SimdInt as _, f32x16, i32x16, mask32x16};
 
-use super::{Boxes, Corners, Edge, Edges, Places, linear_depths};
+use super::{Boxes, Corners, Edge, Edges, LinearDepths, Places};
 use crate::screen::coverage::SUBPIXELS;
 use crate::simd::gather::of_lanes;
 use marraztu_core::base::math::each;
@@ -22,6 +22,7 @@ pub(crate) struct UsualEdges<S: Simd> {
 impl<S: Simd> Edges<S> for UsualEdges<S> {
     type At = [f32x16<S>; 3];
     type Shift = [f32x16<S>; 3];
+    type Pixels = LinearDepths<S>;
 
     #[inline(always)]
     fn new(
@@ -99,8 +100,23 @@ impl<S: Simd> Edges<S> for UsualEdges<S> {
     }
 
     #[inline(always)]
-    fn depths(&self, at: Places<'_, S, Self::Shift>) -> f32x16<S> {
-        linear_depths(self, self.gradients, at)
+    fn pixels(&self, lanes: i32x16<S>, by: [i32x16<S>; 2]) -> Self::Pixels {
+        LinearDepths::new(self, self.gradients, (lanes, by, None))
+    }
+
+    #[inline(always)]
+    fn depths(
+        &self,
+        pixels: &Self::Pixels,
+        (lanes, shift): (i32x16<S>, Option<&Self::Shift>),
+    ) -> f32x16<S> {
+        // Edge functions are whole numbers, so sums of them are exact.
+        match shift {
+            Some(shift) => {
+                pixels.moved([of_lanes(shift[1], lanes), of_lanes(shift[2], lanes)]).at_pixels()
+            }
+            None => pixels.at_pixels(),
+        }
     }
 }
 

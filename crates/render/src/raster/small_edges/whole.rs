@@ -6,7 +6,7 @@ use fearless_simd::{
     f32x16, f64x8, i32x16, mask32x16, u32x16,
 };
 
-use super::{Boxes, Corners, Edge, Edges, Places, linear_depths};
+use super::{Boxes, Corners, Edge, Edges, LinearDepths, Places};
 use crate::screen::coverage::{Grid, SUBPIXELS};
 use crate::simd::gather::{of_lanes, permute};
 use crate::simd::in_f64;
@@ -47,6 +47,7 @@ impl<S: Simd> WholeEdges<S> {
 impl<S: Simd> Edges<S> for WholeEdges<S> {
     type At = [i32x16<S>; 3];
     type Shift = [i32x16<S>; 3];
+    type Pixels = WholeDepths<S>;
 
     #[inline(always)]
     fn new(_: S, corners: Corners<S>, boxes: Boxes<S>, [d0, d1, d2]: [f32x16<S>; 3]) -> Self {
@@ -98,17 +99,42 @@ impl<S: Simd> Edges<S> for WholeEdges<S> {
     }
 
     #[inline(always)]
-    fn depths(&self, at: Places<'_, S, Self::Shift>) -> f32x16<S> {
-        let (second, third) = (in_f64(self.edge(1, at)), in_f64(self.edge(2, at)));
-        let (lanes, ..) = at;
+    fn pixels(&self, lanes: i32x16<S>, by: [i32x16<S>; 2]) -> Self::Pixels {
         let (low, high) = of_lanes(self.depth, lanes).widen();
-        let to_second = doubles(self.to_second, lanes);
-        let to_third = doubles(self.to_third, lanes);
+        WholeDepths {
+            edges: [self.edge(1, (lanes, by, None)), self.edge(2, (lanes, by, None))],
+            depth: [low, high],
+            to_second: doubles(self.to_second, lanes),
+            to_third: doubles(self.to_third, lanes),
+        }
+    }
+
+    #[inline(always)]
+    fn depths(
+        &self,
+        pixels: &Self::Pixels,
+        (lanes, shift): (i32x16<S>, Option<&Self::Shift>),
+    ) -> f32x16<S> {
+        let WholeDepths { edges: [mut second, mut third], depth, to_second, to_third } = *pixels;
+        if let Some(shift) = shift {
+            (second, third) = (second + permute(shift[1], lanes), third + permute(shift[2], lanes));
+        }
+        let (second, third) = (in_f64(second), in_f64(third));
         // The same operations in the same order as in `medium`, for the same bits.
-        let low = second[0] * to_second[0] + low + third[0] * to_third[0];
-        let high = second[1] * to_second[1] + high + third[1] * to_third[1];
+        let low = second[0] * to_second[0] + depth[0] + third[0] * to_third[0];
+        let high = second[1] * to_second[1] + depth[1] + third[1] * to_third[1];
         low.narrow(high)
     }
+}
+
+/// Depths at some pixels: their second and third edge functions, the depth of the first corner, and
+/// its growth with these functions.
+#[derive(Clone, Copy)]
+pub(crate) struct WholeDepths<S: Simd> {
+    edges: [i32x16<S>; 2],
+    depth: [f64x8<S>; 2],
+    to_second: [f64x8<S>; 2],
+    to_third: [f64x8<S>; 2],
 }
 
 /// Divides depth differences by areas.
@@ -151,6 +177,7 @@ impl<S: Simd> Edges<S> for FineEdges<S> {
     type At = [i32x16<S>; 3];
     /// The changes of the quotients and of the edge functions.
     type Shift = ([i32x16<S>; 3], [f32x16<S>; 3]);
+    type Pixels = [i32x16<S>; 2];
     const GRID: Grid = Grid::Fine;
 
     #[inline(always)]
@@ -217,8 +244,17 @@ impl<S: Simd> Edges<S> for FineEdges<S> {
     }
 
     #[inline(always)]
-    fn depths(&self, at: Places<'_, S, Self::Shift>) -> f32x16<S> {
-        linear_depths(self, self.gradients, at)
+    fn pixels(&self, _: i32x16<S>, by: [i32x16<S>; 2]) -> Self::Pixels {
+        by
+    }
+
+    #[inline(always)]
+    fn depths(
+        &self,
+        by: &Self::Pixels,
+        (lanes, shift): (i32x16<S>, Option<&Self::Shift>),
+    ) -> f32x16<S> {
+        LinearDepths::new(self, self.gradients, (lanes, *by, shift)).at_pixels()
     }
 }
 

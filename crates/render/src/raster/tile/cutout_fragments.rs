@@ -41,8 +41,10 @@ impl Default for Fragments {
 /// Lists the pixels of a block that pass the depth test, and draws none.
 pub(super) struct List<'a> {
     pub(super) fragments: &'a mut Fragments,
-    /// The index of the block's first entry in the visibility buffer.
+    /// The index of the sample's first entry in the visibility buffer, and the number of samples
+    /// per pixel.
     pub(super) first: usize,
+    pub(super) samples: usize,
 }
 
 impl<S: Simd> large::InFront<S> for List<'_> {
@@ -60,8 +62,9 @@ impl<S: Simd> large::InFront<S> for List<'_> {
         let to = *count % (ROOM - 16);
         let mask = mask32x16::from_bitmask(simd, pixels);
         // Appends the pixels of both rows; compressing keeps only the lanes in front.
-        let first = i32::try_from(self.first + 16 * pair).unwrap_or(0);
-        let place = i32x16::from_slice(simd, &UP_TO_SIXTEEN) + first;
+        let first = i32::try_from(self.first + 16 * pair * self.samples).unwrap_or(0);
+        let samples = i32::try_from(self.samples).unwrap_or(1);
+        let place = i32x16::from_slice(simd, &UP_TO_SIXTEEN) * samples + first;
         place.compress(mask).store_slice(&mut places[to..to + 16]);
         depth.compress(mask).store_slice(&mut depths[to..to + 16]);
         let [up, down] = [pixels & 0xff, pixels >> 8 & 0xff];
@@ -130,7 +133,8 @@ impl Fragments {
 
 /// Returns the column and row in the tile of an entry of the visibility buffer.
 fn pixel_of(place: usize, samples: usize) -> [i32; 2] {
-    let (block, within) = (place / (samples * BLOCK_PIXELS), place % BLOCK_PIXELS);
+    let pixel = place / samples;
+    let (block, within) = (pixel / BLOCK_PIXELS, pixel % BLOCK_PIXELS);
     let (side, blocks) = (BLOCK as usize, BLOCKS as usize);
     let (x, y) = (block % blocks * side + within % side, block / blocks * side + within / side);
     [x, y].map(|i| i32::try_from(i).unwrap_or(0))

@@ -92,13 +92,14 @@ impl Visibility {
         let (first, format) = (self.corner(block), Any(self.depth_format));
         for (sample, test) in tests.iter().enumerate() {
             let at = (block, self.sample_positions.shift::<N>(sample));
-            let plane = self.plane::<N>(block, sample);
             let holes = test.as_ref().map(|test| BlockHoles { test, first });
-            // Compiled only once, for any `N`.
-            simd.vectorize(
-                #[inline(always)]
-                || triangle.draw(format, simd, at, whole, holes, plane),
-            );
+            self.draw_plane::<N>(block, sample, |plane| {
+                // Compiled only once, for any `N`.
+                simd.vectorize(
+                    #[inline(always)]
+                    || triangle.draw(format, simd, at, whole, holes, plane),
+                );
+            });
         }
     }
 
@@ -156,14 +157,15 @@ impl Visibility {
             fragments.count = 0;
             for block in Bits(some) {
                 self.write::<N>(simd.level(), block);
-                let first = (block * samples + sample) * BLOCK_PIXELS;
+                let first = block * samples * BLOCK_PIXELS + sample;
                 let whole = whole >> block & 1 != 0;
-                let mut list = List { fragments, first };
-                let plane = self.plane::<N>(block, sample);
-                simd.vectorize(
-                    #[inline(always)]
-                    || large.draw(format, simd, (block, shift), whole, &mut list, plane),
-                );
+                let mut list = List { fragments, first, samples };
+                self.draw_plane::<N>(block, sample, |plane| {
+                    simd.vectorize(
+                        #[inline(always)]
+                        || large.draw(format, simd, (block, shift), whole, &mut list, plane),
+                    );
+                });
             }
             if fragments.count == 0 {
                 continue;

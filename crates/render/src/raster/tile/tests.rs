@@ -10,7 +10,6 @@ use crate::raster::queue::{ROWS, SMALL};
 use crate::raster::rule::{Fine, Rule, Unsnapped, Usual};
 use crate::raster::scan_lines::ScanLines;
 use crate::raster::small;
-use crate::raster::tile_queues::FIRST_SIZE;
 use crate::raster::visibility_buffer::{Visible, seen};
 use crate::screen::clip::ScreenVertex;
 use crate::screen::coverage::{Grid, Snapped, Triangle};
@@ -24,9 +23,9 @@ const SIZE: Size = Size { width: 150, height: 140 };
 const PICTURE: PixelBox = PixelBox { left: 0, top: 0, right: 150, bottom: 140 };
 const TILE_BOX: PixelBox = PixelBox { left: 0, top: 0, right: TILE, bottom: TILE };
 
-/// Returns the centre, and the samples farthest from it on all sides.
+/// Returns the centre, four samples and sixteen.
 fn middle_and_others() -> [SamplePositions; 3] {
-    [passes(Samples::One)[0], passes(Samples::Four)[0], passes(Samples::Sixteen)[3]]
+    [passes(Samples::One)[0], passes(Samples::Four)[0], passes(Samples::Sixteen)[0]]
 }
 
 /// Pseudo-random numbers.
@@ -43,7 +42,7 @@ fn bins(sample_positions: SamplePositions) -> Bins {
 
 /// Returns the pixels that a triangle may cover in some of their samples.
 fn reached(corners: [Snapped; 3], sample_positions: &SamplePositions) -> PixelBox {
-    PixelBox::reached(corners, sample_positions.reach::<FOUR>())
+    PixelBox::reached(corners, sample_positions.reach::<MANY>())
 }
 
 /// Returns the bins with some triangles of a queue, at most sixteen.
@@ -72,7 +71,7 @@ fn small_by<R: Rule>(
         }
         let brush = &mut Brush::default();
         match sample_positions.are_many() {
-            true => small::draw_pack::<_, R, FOUR, false>((queue, 0), &pack, &mut bins, brush),
+            true => small::draw_pack::<_, R, MANY, false>((queue, 0), &pack, &mut bins, brush),
             false => small::draw_pack::<_, R, 1, false>((queue, 0), &pack, &mut bins, brush),
         }
     });
@@ -112,7 +111,7 @@ fn waiting(
         let pack = rows.map(|row| i32x16::from_slice(simd, &row));
         let boxes = bins.tile_queues.boxes(boxes.map(|row| i32x16::from_slice(simd, &row)));
         let some = mask32x16::from_bitmask(simd, (1 << triangles.len()) - 1);
-        bins.tile_queues.add(queue - FIRST_SIZE, (&pack, &boxes), some);
+        bins.tile_queues.add(queue, (&pack, &boxes), some);
     });
     bins
 }
@@ -122,8 +121,8 @@ fn draw_bins(visibility: &mut Visibility, bins: &Bins, (tile, bounds): (usize, P
     visibility.clear(bounds, bins.sample_positions);
     dispatch!(Level::new(), simd => match bins.sample_positions.are_many() {
         true => {
-            visibility.draw_plain::<_, FOUR>(simd, bins, (tile, None));
-            visibility.draw_hits::<_, FOUR>(simd, bins, tile);
+            visibility.draw_plain::<_, MANY>(simd, bins, (tile, None));
+            visibility.draw_hits::<_, MANY>(simd, bins, tile);
             visibility.draw_small(simd, std::slice::from_ref(bins), tile);
         }
         false => {
@@ -136,7 +135,7 @@ fn draw_bins(visibility: &mut Visibility, bins: &Bins, (tile, bounds): (usize, P
 /// Draws a large triangle.
 fn draw_large(visibility: &mut Visibility, large: &LargeTriangle) {
     dispatch!(Level::new(), simd => match visibility.sample_positions.are_many() {
-        true => visibility.draw_large::<_, FOUR>(simd, large, None),
+        true => visibility.draw_large::<_, MANY>(simd, large, None),
         false => visibility.draw_large::<_, 1>(simd, large, None),
     });
 }
@@ -177,7 +176,7 @@ fn covered_on(
 ) -> Vec<(i32, i32, usize)> {
     let mut samples = Vec::new();
     for sample in 0..sample_positions.count() {
-        let shift = grid.offset(sample_positions.shift::<FOUR>(sample));
+        let shift = grid.offset(sample_positions.shift::<MANY>(sample));
         let seen_from = corners.map(|corner| corner.seen_from(shift));
         if let Some(triangle) = Triangle::on(grid, seen_from) {
             triangle.covered(PICTURE, |pixel| samples.push((pixel.y, pixel.x, sample)));
@@ -228,7 +227,7 @@ fn look_at(corners: [Snapped; 3], sample_positions: SamplePositions) {
         let nearer = |pixel: &(i32, i32, usize)| !got.contains(pixel);
         assert!(!want.iter().any(nearer), "{corners:?} among others");
         assert_eq!(got.len(), want.len(), "{corners:?} among others");
-        if sample_positions.are_many() && queue >= FIRST_SIZE {
+        if sample_positions.are_many() {
             for some in [&all[..1], &all] {
                 let got = seen_in(&waiting(queue, some, sample_positions));
                 assert_eq!(got, want, "{corners:?} waits with {} others", some.len() - 1);
@@ -456,11 +455,11 @@ fn of_large_triangles_the_nearest_is_seen_and_of_equally_near_ones_the_older() {
 
 /// Returns the visibility of each pixel's samples, found triangle by triangle and sample by sample.
 #[expect(clippy::needless_range_loop, reason = "a sample is one of each pixel's")]
-fn one_by_one(triangles: &[LargeTriangle], sample_positions: &SamplePositions) -> Vec<[u64; FOUR]> {
-    let mut words = vec![[0; FOUR]; PIXELS];
+fn one_by_one(triangles: &[LargeTriangle], sample_positions: &SamplePositions) -> Vec<[u64; MANY]> {
+    let mut words = vec![[0; MANY]; PIXELS];
     for large in triangles {
         for sample in 0..sample_positions.count() {
-            let shift = sample_positions.shift::<FOUR>(sample);
+            let shift = sample_positions.shift::<MANY>(sample);
             let ends = large.corners.map(|corner| corner.seen_from(shift));
             let moved = LargeTriangle { corners: ends, ..*large };
             let Some(triangle) = Triangle::new(ends.map(|corner| corner.at())) else { continue };

@@ -60,7 +60,7 @@ impl Visibility {
                 self.paint_block(simd.level(), large, block, whole, paint);
             } else {
                 self.write::<N>(simd.level(), block);
-                self.draw_planes::<N>(simd.level(), triangle, block, whole);
+                self.draw_block::<N>(simd.level(), triangle, block, whole);
             }
         }
     }
@@ -102,14 +102,16 @@ impl Visibility {
                 self.color(simd.level(), block);
                 let entries = &mut self.buffer.0.as_chunks_mut().0[block];
                 let painted = Painted { paint, colors: self.colors.block_mut(block) };
-                medium.draw(format, simd, (block, [0; 2]), area, Some(painted), entries);
+                medium.draw(format, simd, block, area, Some(painted), entries);
                 continue;
             }
             self.write::<N>(simd.level(), block);
-            for sample in 0..self.sample_positions.count_in::<N>() {
-                let shift = self.sample_positions.shift::<N>(sample);
-                let plane = self.plane::<N>(block, sample);
-                medium.draw(format, simd, (block, shift), area, None, plane);
+            let positions = self.sample_positions;
+            let entries = self.entries_mut::<N>(block);
+            if N > 1 {
+                medium.draw_samples(format, simd, block, area, (&positions, entries));
+            } else if let Some(plane) = entries.first_chunk_mut() {
+                medium.draw(format, simd, block, area, None, plane);
             }
         });
     }
@@ -145,7 +147,7 @@ impl Visibility {
     ) {
         if !self.note_full_block::<N>(triangle, block, place) {
             self.write::<N>(level, block);
-            self.draw_planes::<N>(level, triangle, block, true);
+            self.draw_block::<N>(level, triangle, block, true);
         }
     }
 

@@ -106,12 +106,13 @@ impl Visibility {
                 self.write::<N>(simd.level(), block);
                 let first = self.corner(block);
                 let holes = test.as_ref().map(|test| BlockHoles { test, first });
-                let plane = self.plane::<N>(block, sample);
-                // Compiled only once, for any `N`.
-                simd.vectorize(
-                    #[inline(always)]
-                    || rows.draw(format, simd, block, holes.as_ref(), plane),
-                );
+                self.draw_plane::<N>(block, sample, |plane| {
+                    // Compiled only once, for any `N`.
+                    simd.vectorize(
+                        #[inline(always)]
+                        || rows.draw(format, simd, block, holes.as_ref(), plane),
+                    );
+                });
             }
         }
     }
