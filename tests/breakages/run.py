@@ -67,20 +67,20 @@ def put(target, data):
         target.write_bytes(data)
 
 
-def run(where, target, *names, broken=""):
+def run(where, target, *names, number=""):
     """Compiles and runs a test target."""
     run = output(
         "cargo", "test", "--locked", "--no-default-features", "--features", "cli", "--target-dir", WORK / "build",
-        "--test", target, "--", *names, cwd=where, env=os.environ | {BROKEN: broken},
+        "--test", target, "--", *names, cwd=where, env=os.environ | {BROKEN: number},
     )
     if f"Running tests/{target}" not in run.stderr:
         sys.exit(f"run.py: not compiled:\n{run.stderr}")
     return run
 
 
-def hard_cases(where, *names, broken=""):
+def hard_cases(where, *names, number=""):
     """The hard cases that fail, by name."""
-    tried = run(where, "hard_cases", *names, broken=broken)
+    tried = run(where, "hard_cases", *names, number=number)
     failed = re.findall(r"^test (?:\w+::)*(\w+) \.\.\. FAILED", tried.stdout, re.MULTILINE)
     if tried.returncode and not failed:
         # The whole process ended: a crash is noticed, too.
@@ -88,13 +88,13 @@ def hard_cases(where, *names, broken=""):
     return failed
 
 
-def claimed(where, case, broken=""):
+def claimed(where, case, number=""):
     """What fails of the tests that claim a case."""
     if isinstance(case, int):
-        return hard_cases(where, f"case_{case}_", broken=broken)
+        return hard_cases(where, f"case_{case}_", number=number)
     if case == "paths":
-        return ["the test of colour paths"] if run(where, "paths", broken=broken).returncode else []
-    return [f"the proof {case}"] if run(where, "proofs", case, broken=broken).returncode else []
+        return ["the test of colour paths"] if run(where, "paths", number=number).returncode else []
+    return [f"the proof {case}"] if run(where, "proofs", case, number=number).returncode else []
 
 
 def broken(text, breakage):
@@ -153,7 +153,7 @@ def attempt(mine, where):
             copy(where, {breakage["file"]: broken((ROOT / breakage["file"]).read_text(), breakage)})
         caught = claimed(where, breakage["case"], number)
         # Not by the case that claims it: by any?
-        others = [] if caught else hard_cases(where, broken=number)
+        others = [] if caught else hard_cases(where, number=number)
         today = datetime.datetime.now(datetime.timezone.utc).date().isoformat()
         commit = output("git", "describe", "--always", "--dirty", "--exclude", "*", cwd=ROOT).stdout.strip()
         came = "caught" if caught else "only by others" if others else "SURVIVED"

@@ -38,6 +38,7 @@ impl Default for SamplePositions {
     }
 }
 
+#[expect(clippy::cast_possible_truncation, reason = "at most sixteen samples")]
 impl SamplePositions {
     /// A single sample at the centre.
     const MIDDLE: Self = Self { shifts: [[0; 2]; MANY], count: 1, least: [0; 2], most: [0; 2] };
