@@ -169,7 +169,9 @@ def test_layers_without_memory_raise_memory_error():
 def test_ctrl_c_ends_a_picture_that_would_take_minutes():
     output = run(
         """
-        import _thread
+        import _thread, signal
+        # A background job of a shell ignores Ctrl+C.
+        signal.signal(signal.SIGINT, signal.default_int_handler)
         mesh = mz.Mesh([[-9, -9, 0], [9, -9, 0], [9, 9, 0], [-9, 9, 0]], [[0, 1, 2, 3]])
         scene = mz.Scene([mesh] * 200)
         for threads in (1, 2):
