@@ -23,7 +23,7 @@ use super::queue::{Pack, SMALL};
 use super::rule::Rule;
 use super::small_edges::Edges;
 use crate::screen::coverage::PixelBox;
-use crate::screen::sample_positions::{MANY, SamplePositions};
+use crate::screen::sample_positions::SamplePositions;
 use crate::simd::gather::permute;
 use crate::simd::{Real, UP_TO_SIXTEEN};
 
@@ -96,7 +96,10 @@ fn draw<S: Simd, E: Edges<S>, const N: usize, const COLORED: bool>(
     // One sample after the other: list the covered pixels, then compute depths and colours.
     for sample in 0..samples {
         // A single sample lies at the centre, which saves adding its offset.
-        let shift = (N > 1).then(|| lanes.edges.shift(sample_positions.shift::<N>(sample)));
+        let shift = match N {
+            1 => None,
+            _ => Some(lanes.edges.shift(sample_positions.shift::<N>(sample))),
+        };
         lanes.scan(shift.as_slice(), covered);
         let mut mix = None;
         // Colours are only looked up if some pixel is covered.
@@ -133,23 +136,21 @@ fn draw<S: Simd, E: Edges<S>, const N: usize, const COLORED: bool>(
     }
 }
 
-/// Sixteen small triangles with several samples per pixel, set up for rasterisation.
-pub(super) struct SampledLanes<S: Simd, E: Edges<S>> {
+/// Sixteen small triangles with `N` samples per pixel, set up for rasterisation.
+pub(super) struct SampledLanes<S: Simd, E: Edges<S>, const N: usize> {
     lanes: Lanes<S, E>,
-    shifts: [E::Shift; MANY],
-    samples: usize,
+    shifts: [E::Shift; N],
 }
 
-impl<S: Simd, E: Edges<S>> SampledLanes<S, E> {
+impl<S: Simd, E: Edges<S>, const N: usize> SampledLanes<S, E, N> {
     #[inline(always)]
     pub(super) fn new(pack: &Pack<S>, sample_positions: &SamplePositions) -> Self {
-        let lanes = Lanes::<S, E>::new(pack[0].simd, pack, sample_positions.reach::<MANY>());
-        let samples = sample_positions.count().min(MANY);
-        let mut shifts = [lanes.edges.shift([0; 2]); MANY];
-        for (sample, shift) in shifts[..samples].iter_mut().enumerate() {
-            *shift = lanes.edges.shift(sample_positions.shift::<MANY>(sample));
+        let lanes = Lanes::<S, E>::new(pack[0].simd, pack, sample_positions.reach::<N>());
+        let mut shifts = [lanes.edges.shift(sample_positions.shift::<N>(0)); N];
+        for (sample, shift) in shifts.iter_mut().enumerate().skip(1) {
+            *shift = lanes.edges.shift(sample_positions.shift::<N>(sample));
         }
-        Self { lanes, shifts, samples }
+        Self { lanes, shifts }
     }
 
     /// Calls `take` with the pixels of a box covered in any sample, sixteen at a time, and their
@@ -161,8 +162,8 @@ impl<S: Simd, E: Edges<S>> SampledLanes<S, E> {
         covered: &mut Covered,
         take: impl FnMut(&CoveredPixels<S, E>, usize),
     ) {
-        let Self { lanes, shifts, samples } = self;
-        lanes.scan(&shifts[..*samples], covered);
+        let Self { lanes, shifts } = self;
+        lanes.scan(shifts, covered);
         // Triangles in several tiles have pixels outside this one.
         if lanes.bounds().intersection(within) != lanes.bounds() {
             lanes.keep(within, covered);
@@ -173,7 +174,7 @@ impl<S: Simd, E: Edges<S>> SampledLanes<S, E> {
     /// Returns the depths of pixels in one of their samples.
     #[inline(always)]
     pub(super) fn depths(&self, of: &CoveredPixels<S, E>, sample: usize) -> f32x16<S> {
-        self.lanes.depths(of, Some(&self.shifts[sample % MANY]))
+        self.lanes.depths(of, Some(&self.shifts[sample % N]))
     }
 }
 

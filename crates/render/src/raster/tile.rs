@@ -28,7 +28,7 @@ use self::hits::HitColors;
 use self::small::SmallTriangles;
 use super::bins::Bins;
 use super::depth_format::{Any, Format as _, depths_between, with_format};
-use super::entries::word;
+use super::entries::{FOUR, word};
 use super::geometry::ScreenGeometry;
 use super::hit_colors::Conversion;
 use super::large::BlockTriangle;
@@ -138,7 +138,10 @@ impl Visibility {
         }
         // With one sample, small triangles are hits already.
         if N > 1 {
-            dispatch!(level, simd => self.draw_small(simd, frame.bins(), tile));
+            dispatch!(level, simd => match self.sample_positions.count() {
+                FOUR => self.draw_small::<_, FOUR>(simd, frame.bins(), tile),
+                _ => self.draw_small::<_, MANY>(simd, frame.bins(), tile),
+            });
         }
         // Alpha-tested triangles come after large opaque ones, because hidden pixels are not
         // sampled.
@@ -341,9 +344,14 @@ impl Visibility {
         }
         dispatch!(level, simd => for sample in 0..positions.count_in::<N>() {
             let shift = positions.shift::<N>(sample);
-            self.draw_plane::<N>(block, sample, |plane| with_format!(format, D => {
-                triangle.draw(D::of(format), simd, (block, shift), whole, None, plane);
-            }));
+            self.draw_plane::<N>(
+                block,
+                sample,
+                #[inline(always)]
+                |plane| with_format!(format, D => {
+                    triangle.draw(D::of(format), simd, (block, shift), whole, None, plane);
+                }),
+            );
         });
     }
 

@@ -78,17 +78,12 @@ impl Samples {
     /// Lists the primitives of a pixel that its first sample does not show.
     #[inline(always)]
     fn list_others<S: Simd, const N: usize>(&mut self, simd: S, samples: &[u64; N], place: usize) {
-        // Samples beyond the last show what the first shows, and do not count.
-        let mut entries = [samples[0]; MANY];
-        entries[..N].copy_from_slice(samples);
-        let (_, numbers) = keys_and_numbers(simd, &entries);
-        let of_samples = (1 << N) - 1;
-        let mut same = numbers.simd_eq(number_of(samples[0])).to_bitmask() & of_samples;
+        let same = alike(simd, samples, number_of(samples[0]));
         self.shares[place] = same.count_ones().cast_signed();
-        let mut left = of_samples & !same;
+        let mut left = ((1 << N) - 1) & !same;
         while left != 0 {
-            let number = number_of(entries[left.trailing_zeros() as usize % MANY]);
-            same = numbers.simd_eq(number).to_bitmask() & left;
+            let number = number_of(samples[left.trailing_zeros() as usize % N]);
+            let same = alike(simd, samples, number);
             self.others.push(Other { place, number, share: same.count_ones().cast_signed() });
             left &= !same;
         }
@@ -116,6 +111,16 @@ impl Samples {
         });
         !known
     }
+}
+
+/// Returns the samples of a pixel that show this primitive, a bit for each.
+#[inline(always)]
+fn alike<S: Simd, const N: usize>(simd: S, samples: &[u64; N], number: u32) -> u64 {
+    if N == MANY {
+        return keys_and_numbers(simd, samples).1.simd_eq(number).to_bitmask();
+    }
+    let bit = |i: usize| u64::from(number_of(samples[i]) == number) << i;
+    (0..N).fold(0, |alike, i| alike | bit(i))
 }
 
 /// The colour of one triangle for each pixel of a block, from earlier passes over the picture.

@@ -78,8 +78,11 @@ impl<S: Simd> Edges<S> for WholeEdges<S> {
     fn shift(&self, [x, y]: [i32; 2]) -> Self::Shift {
         let [a, b] = self.steps;
         // Steps are multiples of 256, so the steps by one subpixel are exact.
-        let gain = |i: usize| (a[i] >> 8) * x + (b[i] >> 8) * y;
-        [gain(0), gain(1), gain(2)]
+        each(
+            [[a[0], b[0]], [a[1], b[1]], [a[2], b[2]]],
+            #[inline(always)]
+            |[a, b]| (a >> 8) * x + (b >> 8) * y,
+        )
     }
 
     #[inline(always)]
@@ -206,14 +209,15 @@ impl<S: Simd> Edges<S> for FineEdges<S> {
     #[inline(always)]
     fn shift(&self, by: [i32; 2]) -> Self::Shift {
         let ([a, b], [x, y]) = (self.steps, Grid::Fine.offset(by));
-        let gain = |i: usize| a[i] * x + b[i] * y;
+        let gains = [a[0] * x + b[0] * y, a[1] * x + b[1] * y, a[2] * x + b[2] * y];
         // The quotient of the sum can differ by one from the sum of the quotients, so it is
         // computed here.
-        let quotient = |i: usize| ((self.first[i] + gain(i)) >> FINE) - (self.first[i] >> FINE);
-        (
-            [quotient(0), quotient(1), quotient(2)],
-            [gain(0).to_float(), gain(1).to_float(), gain(2).to_float()],
-        )
+        let quotients = each(
+            [[self.first[0], gains[0]], [self.first[1], gains[1]], [self.first[2], gains[2]]],
+            #[inline(always)]
+            |[first, gain]| ((first + gain) >> FINE) - (first >> FINE),
+        );
+        (quotients, [gains[0].to_float(), gains[1].to_float(), gains[2].to_float()])
     }
 
     #[inline(always)]

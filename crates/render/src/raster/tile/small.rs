@@ -36,8 +36,14 @@ type Most<S> = <Usual as Rule>::Edges<S>;
 type Last<S> = <Usual as Rule>::LastEdges<S>;
 
 impl Visibility {
-    /// Draws the small triangles that wait for a tile, from the bins of all threads.
-    pub(super) fn draw_small<S: Simd>(&mut self, simd: S, bins: &[Bins], tile: usize) {
+    /// Draws the small triangles that wait for a tile, from the bins of all threads, with `N`
+    /// samples per pixel.
+    pub(super) fn draw_small<S: Simd, const N: usize>(
+        &mut self,
+        simd: S,
+        bins: &[Bins],
+        tile: usize,
+    ) {
         if bins.iter().all(|bins| bins.tile_queues.is_empty(tile)) {
             return;
         }
@@ -48,7 +54,7 @@ impl Visibility {
             #[inline(always)]
             || {
                 with_format!(self.depth_format, D => {
-                    small.draw(simd, D::of(self.depth_format), (bins, tile), self);
+                    small.draw::<S, D, N>(simd, D::of(self.depth_format), (bins, tile), self);
                 });
             },
         );
@@ -59,7 +65,7 @@ impl Visibility {
 impl SmallTriangles {
     /// Draws all triangles that wait for a tile.
     #[inline(always)]
-    fn draw<S: Simd, D: Format>(
+    fn draw<S: Simd, D: Format, const N: usize>(
         &mut self,
         simd: S,
         format: D,
@@ -68,15 +74,15 @@ impl SmallTriangles {
     ) {
         for size in 0..SIZES {
             if size + 1 < SIZES {
-                self.draw_size::<S, D, Most<S>>(simd, format, (of, size), into);
+                self.draw_size::<S, D, Most<S>, N>(simd, format, (of, size), into);
             } else {
-                self.draw_size::<S, D, Last<S>>(simd, format, (of, size), into);
+                self.draw_size::<S, D, Last<S>, N>(simd, format, (of, size), into);
             }
         }
     }
 
     #[inline(always)]
-    fn draw_size<S: Simd, D: Format, E: Edges<S>>(
+    fn draw_size<S: Simd, D: Format, E: Edges<S>, const N: usize>(
         &mut self,
         simd: S,
         format: D,
@@ -93,21 +99,21 @@ impl SmallTriangles {
                     // Full packs are drawn directly. Incomplete ones are collected, to keep all
                     // lanes busy.
                     if count == PACK {
-                        return self.draw_pack::<S, D, E>(format, pack, into);
+                        return self.draw_pack::<S, D, E, N>(format, pack, into);
                     }
                     let some = mask32x16::from_bitmask(simd, (1 << count) - 1);
                     if self.rest.add((pack, None), some, count) {
-                        self.draw_rest::<S, D, E>(simd, format, into);
+                        self.draw_rest::<S, D, E, N>(simd, format, into);
                     }
                 },
             );
         }
-        self.draw_rest::<S, D, E>(simd, format, into);
+        self.draw_rest::<S, D, E, N>(simd, format, into);
     }
 
     /// Draws the left-over triangles.
     #[inline(always)]
-    fn draw_rest<S: Simd, D: Format, E: Edges<S>>(
+    fn draw_rest<S: Simd, D: Format, E: Edges<S>, const N: usize>(
         &mut self,
         simd: S,
         format: D,
@@ -115,7 +121,7 @@ impl SmallTriangles {
     ) {
         for at in (0..self.rest.waiting()).step_by(PACK) {
             let pack = self.rest.pack(simd, at);
-            self.draw_pack::<S, D, E>(format, &pack, into);
+            self.draw_pack::<S, D, E, N>(format, &pack, into);
         }
         self.rest.forget();
     }
@@ -124,7 +130,7 @@ impl SmallTriangles {
     ///
     /// Compiled as a separate function because it is called from several places.
     #[inline(always)]
-    fn draw_pack<S: Simd, D: Format, E: Edges<S>>(
+    fn draw_pack<S: Simd, D: Format, E: Edges<S>, const N: usize>(
         &mut self,
         format: D,
         pack: &Pack<S>,
@@ -132,20 +138,19 @@ impl SmallTriangles {
     ) {
         pack[0].simd.vectorize(
             #[inline(always)]
-            || self.draw_pack_in::<S, D, E>(format, pack, into),
+            || self.draw_pack_in::<S, D, E, N>(format, pack, into),
         );
     }
 
     #[inline(always)]
-    fn draw_pack_in<S: Simd, D: Format, E: Edges<S>>(
+    fn draw_pack_in<S: Simd, D: Format, E: Edges<S>, const N: usize>(
         &mut self,
         format: D,
         pack: &Pack<S>,
         into: &mut Visibility,
     ) {
         let simd = pack[0].simd;
-        let samples = into.sample_positions.count();
-        let lanes = SampledLanes::<S, E>::new(pack, &into.sample_positions);
+        let lanes = SampledLanes::<S, E, N>::new(pack, &into.sample_positions);
         lanes.each_in(
             into.bounds,
             &mut self.covered,
@@ -165,7 +170,7 @@ impl SmallTriangles {
                 // depth test.
                 let (nothing, background) =
                     (u32x16::splat(simd, 0), u32x16::splat(simd, BACKGROUND));
-                for first in (0..samples).step_by(FOUR) {
+                for first in (0..N).step_by(FOUR) {
                     let (mut keys, mut numbers) = ([nothing; FOUR], [background; FOUR]);
                     for i in 0..FOUR {
                         let some = pixels.covered(first + i, count);
@@ -178,7 +183,7 @@ impl SmallTriangles {
                     for (place, new) in places.iter().zip(new.0.as_chunks::<FOUR>().0) {
                         // Entries are compared as f64: see `put_rows`.
                         let new = f64x4::from_slice(simd, bytemuck::cast_slice(new));
-                        let old = &mut into.buffer.0[place * samples + first..][..FOUR];
+                        let old = &mut into.buffer.0[place * N + first..][..FOUR];
                         let old = bytemuck::cast_slice_mut(old);
                         new.max(f64x4::from_slice(simd, old)).store_slice(old);
                     }

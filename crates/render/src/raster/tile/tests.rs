@@ -123,7 +123,11 @@ fn draw_bins(visibility: &mut Visibility, bins: &Bins, (tile, bounds): (usize, P
         true => {
             visibility.draw_plain::<_, MANY>(simd, bins, (tile, None));
             visibility.draw_hits::<_, MANY>(simd, bins, tile);
-            visibility.draw_small(simd, std::slice::from_ref(bins), tile);
+            let bins = std::slice::from_ref(bins);
+            match bins[0].sample_positions.count() {
+                FOUR => visibility.draw_small::<_, FOUR>(simd, bins, tile),
+                _ => visibility.draw_small::<_, MANY>(simd, bins, tile),
+            }
         }
         false => {
             visibility.draw_plain::<_, 1>(simd, bins, (tile, None));
