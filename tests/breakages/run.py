@@ -30,8 +30,10 @@ WORK = ROOT / "target" / "breakages"
 TABLE = tomllib.loads((ROOT / "tests/breakages/table.toml").read_text())["breakage"]
 UNTRIED = "not tried"
 
-# Beginnings of functions whose body runs at run time, as rustfmt writes them.
-FUNCTION = re.compile(r"^( *)(?:pub(?:\([\w ]+\))? )?(?:unsafe )?fn .*?(?<![;}])\{\n", re.MULTILINE | re.DOTALL)
+# Beginnings of functions whose body runs at run time, as rustfmt writes them. A declaration without a body
+# ends in a semicolon, which types of arrays contain, too.
+ARRAY = r"\[(?:[^][]|\[(?:[^][]|\[[^][]*\])*\])*\]"
+FUNCTION = re.compile(rf"^( *)(?:pub(?:\([\w ]+\))? )?(?:unsafe )?fn (?:[^][;{{}}]|{ARRAY})*\{{\n", re.MULTILINE)
 # The environment variable with the number of the breakage that runs.
 BROKEN = "MARRAZTU_BROKEN"
 SWITCH = f"""
