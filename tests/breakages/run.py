@@ -37,11 +37,22 @@ FUNCTION = re.compile(rf"^( *)(?:pub(?:\([\w ]+\))? )?(?:unsafe )?fn (?:[^][;{{}
 # The environment variable with the number of the breakage that runs.
 BROKEN = "MARRAZTU_BROKEN"
 SWITCH = f"""
-/// Whether this breakage runs.
+static NUMBER: std::sync::atomic::AtomicU32 = std::sync::atomic::AtomicU32::new(u32::MAX);
+
+/// Whether this breakage runs. Kernels ask for each pixel.
+#[inline(always)]
 #[must_use]
 pub fn broken(number: u32) -> bool {{
-    static NUMBER: std::sync::OnceLock<Option<u32>> = std::sync::OnceLock::new();
-    *NUMBER.get_or_init(|| std::env::var("{BROKEN}").ok()?.parse().ok()) == Some(number)
+    let own = NUMBER.load(std::sync::atomic::Ordering::Relaxed);
+    (if own == u32::MAX {{ read() }} else {{ own }}) == number
+}}
+
+#[cold]
+fn read() -> u32 {{
+    let number = std::env::var("{BROKEN}").ok().and_then(|text| text.parse().ok());
+    let number = number.unwrap_or(u32::MAX - 1);
+    NUMBER.store(number, std::sync::atomic::Ordering::Relaxed);
+    number
 }}
 """
 
