@@ -27,8 +27,7 @@ const ALONE: Path = ("alone", |pixels| pixels.alone);
 const JOINED: Path = ("joined", |pixels| pixels.joined);
 const TINY: Path = ("tiny", |pixels| pixels.tiny);
 const FACES: Path = ("faces", |pixels| pixels.faces);
-const EARLY: Path = ("early", |pixels| pixels.early);
-const ALL: [Path; 8] = [FILLED, CORNERS, LIT, ALONE, JOINED, TINY, FACES, EARLY];
+const ALL: [Path; 7] = [FILLED, CORNERS, LIT, ALONE, JOINED, TINY, FACES];
 
 /// Counts the pixels of a scene without marks, by path.
 ///
@@ -102,8 +101,8 @@ fn each_path_colours_the_surfaces_that_it_is_meant_for() {
     let lists: &[Path] = &[JOINED, ALONE];
     expect("flat shading of large triangles", large(), face, (&[FILLED, FACES], &[]));
     expect("flat shading of small triangles", fine(), face, (&[FACES], &[FILLED]));
-    expect("Gouraud shading of large triangles", large(), vertex, (&[CORNERS], &[EARLY]));
-    expect("Gouraud shading of small triangles", fine(), vertex, (&[EARLY], &[CORNERS]));
+    expect("Gouraud shading of large triangles", large(), vertex, (&[CORNERS], lists));
+    expect("Gouraud shading of small triangles", fine(), vertex, (&[JOINED], &[CORNERS, ALONE]));
     expect("Gouraud shading of tiny triangles", finest(), vertex, (&[TINY], lists));
     expect("Phong shading of large triangles", large(), pixel, (&[LIT], lists));
     expect("Phong shading of small triangles", fine(), pixel, (&[JOINED], &[LIT, ALONE]));

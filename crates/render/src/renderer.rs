@@ -15,7 +15,6 @@ use std::sync::{Mutex, PoisonError};
 use fearless_simd::Level;
 
 use super::shading::context::ShadingContext;
-use super::shading::corner_light::VertexLight;
 use super::shading::face_colors::FaceColors;
 use super::shading::light::Lit;
 use super::shading::painter::{Band, Filled, Painter, TileSums};
@@ -26,7 +25,6 @@ use crate::frame::color_path::{ColorPaths, PathPixels};
 use crate::frame::{FramePlan, Rules};
 use crate::plan::color_path::choose;
 use crate::raster::geometry::ScreenGeometry;
-use crate::raster::hit_colors::CornerLight;
 use crate::screen::sample_positions::{SamplePositions, passes, shifts};
 use crate::screen::tiles::TILE_SIDE;
 use crate::shading::interpolated::ShadingNumber;
@@ -284,19 +282,8 @@ impl Renderer {
         self.prepare(plan);
         // The first pass is drawn last, because picking reads its geometry.
         for (i, sample_positions) in passes.iter().enumerate().rev() {
-            if self.built {
-                // The geometry is reused, but the colours of hits belong to the last frame.
-                self.frame.forget_colors();
-            } else {
-                let ShadingCache { lit, terms, .. } = &self.caches.fast;
-                let one = passes.len() == 1 && !sample_positions.are_many();
-                // Hits are coloured even in tiles that are not painted, so this only pays if most
-                // tiles are.
-                let pays = one && 2 * damage.tiles() >= damage.tiles_in_all();
-                let light = pays.then(|| VertexLight::new(self.level, plan, lit, terms)).flatten();
-                let light = light.as_ref().map(|light| light as &dyn CornerLight);
-                self.timings +=
-                    self.frame.build(self.level, plan, (*sample_positions, light), watch);
+            if !self.built {
+                self.timings += self.frame.build(self.level, plan, *sample_positions, watch);
             }
             if watch.is_given_up() {
                 return;
@@ -319,7 +306,7 @@ impl Renderer {
         for (i, shift) in shifts.enumerate() {
             let own = plan.seen_from(shift);
             self.prepare(&own);
-            let one = (SamplePositions::default(), None);
+            let one = SamplePositions::default();
             self.timings += self.frame.build(self.level, &own, one, watch);
             if watch.is_given_up() {
                 return;

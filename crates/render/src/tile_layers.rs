@@ -32,7 +32,7 @@ impl TileLayers {
         frame: &ScreenGeometry,
         (tile, bounds): (usize, PixelBox),
     ) {
-        self.visibility.draw(level, plan, frame, (tile, bounds), None);
+        self.visibility.draw(level, plan, frame, (tile, bounds));
         if frame.is_layered(tile) {
             self.layers.begin(level, plan, frame, (tile, bounds));
         } else {

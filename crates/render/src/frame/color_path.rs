@@ -57,13 +57,11 @@ pub struct PathPixels {
     pub tiny: u64,
     /// Blocks that look up the colours of faces.
     pub faces: u64,
-    /// Blocks that were coloured when their triangles were set up.
-    pub early: u64,
 }
 
 impl std::ops::AddAssign for PathPixels {
     fn add_assign(&mut self, other: Self) {
-        let Self { filled, corners, lit, alone, joined, tiny, faces, early } = other;
+        let Self { filled, corners, lit, alone, joined, tiny, faces } = other;
         self.filled += filled;
         self.corners += corners;
         self.lit += lit;
@@ -71,7 +69,6 @@ impl std::ops::AddAssign for PathPixels {
         self.joined += joined;
         self.tiny += tiny;
         self.faces += faces;
-        self.early += early;
     }
 }
 

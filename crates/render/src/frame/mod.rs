@@ -3,12 +3,14 @@
 pub(crate) mod color_path;
 pub(crate) mod draw;
 pub(crate) mod extras;
+pub(crate) mod raster_mode;
 pub(crate) mod shadows;
 pub(crate) mod variants;
 
 use glam::{DMat4, DVec3};
 
 use self::draw::{Draw, Pipeline};
+use self::raster_mode::RasterMode;
 use self::shadows::Shadows;
 use self::variants::Variants;
 use super::lights::ViewLight;
@@ -113,6 +115,11 @@ impl FramePlan {
             Eye::Point => [0.0 - m.z_axis.x, 0.0 - m.z_axis.y],
             Eye::Parallel => [m.w_axis.x, m.w_axis.y],
         }
+    }
+
+    /// Returns what rasterisation reads of the settings.
+    pub(crate) const fn raster_mode(&self) -> RasterMode {
+        self.variants.raster_mode()
     }
 
     /// Returns the plan of the picture seen by one sample of each pixel, `shift` subpixels from the

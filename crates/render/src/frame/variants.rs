@@ -6,9 +6,8 @@
 
 use std::ops::Deref;
 
-use marraztu_core::accuracy::{
-    BumpFilter, Coverage, Filter, LightValues, Settings, Subpixels, VertexArithmetic,
-};
+use super::raster_mode::RasterMode;
+use marraztu_core::accuracy::{BumpFilter, Filter, LightValues, Settings, Subpixels};
 
 /// The conversion from the bytes of texels to numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,35 +16,6 @@ pub(crate) enum Decoding {
     Stored,
     /// Bytes decoded from sRGB.
     Linear,
-}
-
-/// The grid that corners are snapped to.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Grid {
-    /// 1/256 pixel.
-    #[default]
-    Usual,
-    /// 1/4096 pixel.
-    Fine,
-}
-
-impl Grid {
-    /// Returns the number of grid steps per pixel, in each direction.
-    #[must_use]
-    pub const fn parts(self) -> i32 {
-        match self {
-            Self::Usual => 256,
-            Self::Fine => 4096,
-        }
-    }
-
-    /// Converts an offset in 1/256 pixel to steps of this grid.
-    #[must_use]
-    pub const fn offset(self, [x, y]: [i32; 2]) -> [i32; 2] {
-        // Both grids are powers of two, so the quotient is exact.
-        let times = self.parts() / Self::Usual.parts();
-        [x * times, y * times]
-    }
 }
 
 /// The variants of a frame's stages: a choice for each axis that has variants.
@@ -98,31 +68,13 @@ impl Variants {
         }
     }
 
-    /// The grid that corners of triangles are snapped to.
-    pub(crate) const fn grid(&self) -> Grid {
-        match (self.0.subpixels, self.0.coverage) {
-            // Only exact coverage supports the fine grid.
-            (Subpixels::Bits12, Coverage::Exact) => Grid::Fine,
-            _ => Grid::Usual,
-        }
+    /// Returns what rasterisation reads of the settings.
+    pub(crate) const fn raster_mode(&self) -> RasterMode {
+        RasterMode::of(&self.0)
     }
 
     /// Returns the same variants on the grid of 1/256 pixel.
     pub(crate) fn on_usual_grid(self) -> Self {
         Self(Settings { subpixels: Subpixels::default(), ..self.0 })
-    }
-
-    /// Returns whether vertices are transformed and snapped by the defaults.
-    pub(crate) fn has_default_vertices(&self) -> bool {
-        self.vertices == VertexArithmetic::F64
-            && matches!(self.subpixels, Subpixels::Bits8 | Subpixels::Bits12)
-    }
-
-    /// Returns whether a variant may move geometry on the screen. If so, nothing may be culled by
-    /// position.
-    pub(crate) fn has_geometry_variant(&self) -> bool {
-        !self.has_default_vertices()
-            || self.grid() != Grid::Usual
-            || self.coverage != Coverage::Exact
     }
 }

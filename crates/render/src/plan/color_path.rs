@@ -5,8 +5,7 @@
 
 use crate::frame::color_path::{ColorPath, ColorPaths, FullPath, ListPath};
 use crate::frame::draw::{Back, Draw, Pipeline, Shaded};
-use crate::frame::{Eye, FramePlan, Viewport};
-use crate::screen::clip::Screen;
+use crate::frame::{Eye, FramePlan};
 use marraztu_core::accuracy::{Arithmetic, Coverage, LightAt, Rounding};
 
 /// Chooses the paths of all draws of a frame.
@@ -68,7 +67,7 @@ fn list_path(plan: &FramePlan, draw: &Draw, pipeline: &Pipeline) -> ListPath {
         };
     let may_be_tiny = is_lit
         && plan.eye == Eye::Point
-        && plan.variants.coverage == Coverage::Exact
+        && plan.raster_mode().coverage == Coverage::Exact
         && shaded.texture.is_none()
         && shaded.opacity.is_none()
         && !shaded.vertex_colors;
@@ -100,7 +99,7 @@ pub(crate) fn is_uniform(plan: &FramePlan, pipeline: &Pipeline) -> bool {
 }
 
 /// Whether a pixel shows nothing but the interpolated light at the corners of its triangle.
-pub(crate) fn shows_corner_light(shaded: &Shaded) -> bool {
+fn shows_corner_light(shaded: &Shaded) -> bool {
     shaded.light.is_some()
         && shaded.texture.is_none()
         && !shaded.vertex_colors
@@ -125,51 +124,6 @@ fn is_quick(plan: &FramePlan) -> bool {
         Pipeline::Shaded(shaded) => shaded.texture.is_none() && !shaded.extras.reads_texels(),
     };
     matches!(plan.light_at, LightAt::Face | LightAt::Vertex) && plan.pipelines.iter().all(is_plain)
-}
-
-/// Whether pixels are coloured while triangles are set up, hidden ones included: with light at
-/// vertices, if few are hidden.
-pub(crate) fn colors_early(plan: &FramePlan) -> bool {
-    plan.light_at == LightAt::Vertex
-        && plan.arithmetic == Arithmetic::F32
-        && plan.variants.coverage == Coverage::Exact
-        // Early colours are computed without shadow rays.
-        && !plan.shadows.are_cast()
-        && few_are_hidden(plan)
-}
-
-/// The pixels per triangle of a model, in the box around it on the screen, from which on it pays to
-/// colour hidden pixels, too. A knot with surfaces that hide each other loses a third at 0.5 and a
-/// sixth at 0.9; a sphere gains at both.
-const ENOUGH_PIXELS: f64 = 2.0;
-
-fn few_are_hidden(plan: &FramePlan) -> bool {
-    // Boxes may overlap, so the sum is only an estimate.
-    let (mut pixels, mut triangles) = (0.0, 0.0);
-    for draw in &plan.draws {
-        pixels += box_on_screen(draw, plan.viewport);
-        triangles += draw.model.mesh.triangle_count() as f64;
-    }
-    pixels / triangles >= ENOUGH_PIXELS
-}
-
-/// Returns the pixels of the box around a draw on the screen, also those outside of the picture;
-/// infinite if some of it lies at the height of the observer or behind.
-fn box_on_screen(draw: &Draw, viewport: Viewport) -> f64 {
-    let Some(bounds) = draw.model.mesh.bounds() else { return 0.0 };
-    let screen = Screen::new(draw.clip_from_object, viewport);
-    let mut low = [f64::INFINITY; 2];
-    let mut high = [f64::NEG_INFINITY; 2];
-    for corner in bounds.corners() {
-        let clip = screen.clip(corner.to_array());
-        if clip[3] <= 0.0 {
-            return f64::INFINITY;
-        }
-        for (axis, at) in screen.pixels(clip).into_iter().enumerate() {
-            (low[axis], high[axis]) = (low[axis].min(at), high[axis].max(at));
-        }
-    }
-    (high[0] - low[0]) * (high[1] - low[1])
 }
 
 /// Words a path for the plan, in a few letters: the panel has narrow columns.

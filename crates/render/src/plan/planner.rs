@@ -14,7 +14,7 @@ use super::turning::{shows_fronts_only, turning_of};
 use super::uses::{self, EffectState, EffectUse};
 use crate::frame::Rules;
 use crate::frame::draw::{Back, Draw, Lines, Pipeline, uniform};
-use crate::frame::variants::Variants;
+use crate::frame::raster_mode::RasterMode;
 use crate::lights::region::Region;
 use marraztu_core::accuracy::{LightAt, NormalMatrix, VertexArithmetic};
 use marraztu_core::base::{Shared, color::Color, math};
@@ -48,7 +48,7 @@ impl Planner<'_> {
         let view = &self.shot.view;
         into.plan.rules == Rules::Applied
             && !into.notes.are_wanted()
-            && !into.plan.variants.has_geometry_variant()
+            && !into.plan.raster_mode().moves_geometry()
             && !view.face_normals
             && !view.vertex_normals
     }
@@ -156,7 +156,7 @@ impl Planner<'_> {
             // The back is visible through its transparent front.
             (draw.back, draw.culls_opaque) = (Back::Lit, true);
         }
-        let moves = into.plan.variants.has_geometry_variant();
+        let moves = into.plan.raster_mode().moves_geometry();
         if draw.back == Back::Lit
             && !draw.culls_opaque
             && !moves
@@ -213,9 +213,9 @@ impl Planner<'_> {
             let error = 2e-6 * exact.reach();
             return (Some(Region::placed(draw.view_from_object, corners, error)), false);
         }
-        // A geometry variant may move pixels out of the region.
-        let sure = !Variants::of(&self.shot.settings).has_geometry_variant();
-        if !sure || !self.observer.holds(draw.clip_from_object, corners) {
+        // Geometry that moves may put pixels out of the region.
+        let moves = RasterMode::of(&self.shot.settings).moves_geometry();
+        if moves || !self.observer.holds(draw.clip_from_object, corners) {
             return (None, false);
         }
         (Some(self.observer.seen_region(draw.view_from_object, corners)), true)

@@ -4,7 +4,6 @@
 //! not change visibility.
 
 use super::covered::Covered;
-use super::hit_colors::CornerColors;
 use super::hits::Hits;
 use super::lines::{self, ScreenLine};
 use super::queue::{Queue, SMALL};
@@ -46,8 +45,6 @@ pub(crate) struct Bins {
     /// Small triangles that are rasterised when their tile is drawn.
     pub(crate) tile_queues: TileQueues,
     pub(crate) large: Vec<LargeTriangle>,
-    /// The colours at the corners of large triangles, if known; empty if hits have no colours.
-    pub(crate) large_colors: Vec<Option<CornerColors>>,
     /// The corners of large triangles in pixels before snapping, if the coverage rule needs them.
     pub(crate) unsnapped: Vec<[[f32; 2]; 3]>,
     pub(crate) lines: Vec<ScreenLine>,
@@ -78,7 +75,6 @@ impl Bins {
         self.hits.clear(extent, [self.columns, self.rows]);
         self.tile_queues.clear([self.columns, self.rows], sample_positions.count());
         self.large.clear();
-        self.large_colors.clear();
         self.unsnapped.clear();
         self.lines.clear();
         // A cancelled frame leaves triangles in the queues.
@@ -131,13 +127,6 @@ impl Bins {
         self.drawn += 1;
         self.large.push(triangle);
         self.each(bounds, |bin| bin.large.push(number));
-    }
-
-    /// Sets the corner colours, if known, of the triangle that [`Self::add_large`] adds next.
-    pub(crate) fn color_next(&mut self, colors: Option<CornerColors>) {
-        // Triangles added without colours before this one get `None`.
-        self.large_colors.resize(self.large.len(), None);
-        self.large_colors.push(colors);
     }
 
     /// Adds a line of this width in pixels to the tiles it crosses.

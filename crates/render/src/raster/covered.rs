@@ -22,15 +22,3 @@ impl Default for Covered {
         Self { pixels: [0; MOST + PACK], count: 0 }
     }
 }
-
-impl Covered {
-    /// Returns a bit mask of the lanes that cover any pixel.
-    #[inline(always)]
-    pub(super) fn lanes(&self) -> u64 {
-        let mut lanes = 0_u32;
-        for pixel in &self.pixels[..self.count] {
-            lanes |= 1 << (pixel & 15);
-        }
-        u64::from(lanes)
-    }
-}

@@ -11,7 +11,6 @@ use rayon::prelude::*;
 
 use super::bins::Bins;
 use super::edges;
-use super::hit_colors::CornerLight;
 use super::inputs::{Inputs, Start, number};
 use super::lines::LineNumber;
 use super::parts::{Parts, share_out};
@@ -21,7 +20,7 @@ use super::vertices::Vertices;
 use super::work::{FEW, FEW_VERTICES, What, WorkList, piece_of};
 use crate::cancellation::Cancellation;
 use crate::frame::draw::Draw;
-use crate::frame::variants::Variants;
+use crate::frame::raster_mode::RasterMode;
 use crate::frame::{FramePlan, Viewport};
 use crate::screen::clip::{Screen, ScreenVertex};
 use crate::screen::coverage::Grid;
@@ -60,23 +59,23 @@ struct Held {
     model: Shared<Model>,
     clip_from_object: DMat4,
     viewport: Viewport,
-    variants: Variants,
+    mode: RasterMode,
     shift: [i32; 2],
     vertex: usize,
 }
 
 impl Held {
     fn new(draw: &Draw, plan: &FramePlan, vertex: usize) -> Self {
-        let FramePlan { viewport, variants, shift, .. } = *plan;
+        let FramePlan { viewport, shift, .. } = *plan;
         let (model, clip_from_object) = (draw.model.clone(), draw.clip_from_object);
-        Self { model, clip_from_object, viewport, variants, shift, vertex }
+        Self { model, clip_from_object, viewport, mode: plan.raster_mode(), shift, vertex }
     }
 
     fn is_of(&self, draw: &Draw, plan: &FramePlan, vertex: usize) -> bool {
         Shared::same(&self.model, &draw.model)
             && same_bits(&self.clip_from_object, &draw.clip_from_object)
             && self.viewport == plan.viewport
-            && (self.variants, self.shift) == (plan.variants, plan.shift)
+            && (self.mode, self.shift) == (plan.raster_mode(), plan.shift)
             && self.vertex == vertex
     }
 }
@@ -88,13 +87,12 @@ impl ScreenGeometry {
     }
 
     /// Transforms and bins everything that the plan draws, for a pass with these samples, unless
-    /// cancelled. If there is a `light` at vertices, hits are coloured with it. Vertices that are
-    /// still valid are reused. Returns the time taken.
+    /// cancelled. Vertices that are still valid are reused. Returns the time taken.
     pub(crate) fn build(
         &mut self,
         level: Level,
         plan: &FramePlan,
-        (sample_positions, light): (SamplePositions, Option<&dyn CornerLight>),
+        sample_positions: SamplePositions,
         watch: &Cancellation<'_>,
     ) -> Timings {
         let mut laps = Laps::start();
@@ -102,7 +100,7 @@ impl ScreenGeometry {
         self.number(plan);
         self.place(level, plan, watch);
         let vertices = laps.lap();
-        self.set_up(level, plan, light, watch);
+        self.set_up(level, plan, watch);
         let set_up = laps.lap();
         if !watch.is_given_up() {
             self.add_lines(level, plan, watch);
@@ -162,14 +160,14 @@ impl ScreenGeometry {
         // Threads take pieces sorted by position on the screen, so neighbours stay on one core.
         let threads = self.placing.threads(FEW_VERTICES);
         let work = self.placing.sorted();
-        let shares = WorkStealing::new(work.len(), threads);
+        let (shares, mode) = (WorkStealing::new(work.len(), threads), plan.raster_mode());
         together(threads, || {
             while let Some(work) = shares.next().map(|i| &work[i]).filter(|_| watch.goes_on()) {
                 let draw = &plan.draws[work.draw];
                 let screen = Screen::new(draw.clip_from_object, plan.viewport);
                 let order = draw.model.mesh.draw_order();
                 let out = &mut *pieces[work.place].lock().unwrap_or_else(PoisonError::into_inner);
-                vertex_variants::transform(plan.variants, level, &screen, order, work.from, out);
+                vertex_variants::transform(mode, level, &screen, order, work.from, out);
                 see_from(out, plan.shift);
             }
         });
@@ -190,30 +188,30 @@ impl ScreenGeometry {
         let Vertices { usual, fine, unsnapped } = &mut self.inputs.vertices;
         fine.clear();
         unsnapped.clear();
-        let grid = plan.variants.grid();
-        let is_fine = grid != Grid::Usual;
-        if !is_fine && !with_rule!(plan.variants, R => R::UNSNAPPED) {
+        let mode = plan.raster_mode();
+        let is_fine = mode.grid != Grid::Usual;
+        if !is_fine && !with_rule!(mode, R => R::UNSNAPPED) {
             return;
         }
         fine.resize(if is_fine { usual.len() } else { 0 }, ScreenVertex::default());
         unsnapped.resize(if is_fine { 0 } else { usual.len() }, [0.0; 2]);
         // Draws are transformed one after the other here, each in parallel pieces.
         for (draw, start) in plan.draws.iter().zip(&self.inputs.starts) {
-            let screen = Screen::new(draw.clip_from_object, plan.viewport).on(grid);
-            let screen = screen.seen_from(grid.offset(plan.shift));
+            let screen = Screen::new(draw.clip_from_object, plan.viewport).on(mode.grid);
+            let screen = screen.seen_from(mode.grid.offset(plan.shift));
             let (order, own) = (draw.model.mesh.draw_order(), start.vertex..start.vertex_end);
             let piece = piece_of(own.len());
             if is_fine {
                 fine[own].par_chunks_mut(piece).enumerate().for_each(|(i, out)| {
                     let at = i * piece;
-                    vertex_variants::transform(plan.variants, level, &screen, order, at, out);
-                    see_from(out, grid.offset(plan.shift));
+                    vertex_variants::transform(mode, level, &screen, order, at, out);
+                    see_from(out, mode.grid.offset(plan.shift));
                 });
             } else {
                 unsnapped[own].par_chunks_mut(piece).enumerate().for_each(|(i, out)| {
                     let at = i * piece;
                     // `to_pixels` subtracts the offset of the sample itself.
-                    vertex_variants::to_pixels(plan.variants, level, &screen, order, at, out);
+                    vertex_variants::to_pixels(mode, level, &screen, order, at, out);
                 });
             }
         }
@@ -221,13 +219,7 @@ impl ScreenGeometry {
 
     /// Sets up triangles into bins, one set per thread, and finds the facing of polygons for their
     /// outlines.
-    fn set_up(
-        &mut self,
-        level: Level,
-        plan: &FramePlan,
-        light: Option<&dyn CornerLight>,
-        watch: &Cancellation<'_>,
-    ) {
+    fn set_up(&mut self, level: Level, plan: &FramePlan, watch: &Cancellation<'_>) {
         self.set_up.clear();
         // Lists the work: triangles, then the facing of polygons with edges.
         for (i, draw) in plan.draws.iter().enumerate() {
@@ -251,12 +243,10 @@ impl ScreenGeometry {
         for bins in &mut self.bins {
             bins.clear(plan.size, self.sample_positions);
             bins.clear_transparent(plan.size, plan.is_transparent());
-            // For every thread: one that takes no triangles may still take lines.
-            bins.hits.colored = light.is_some();
         }
         // The tables are computed before the parallel section, which only reads them.
         self.inputs.holes.update(plan);
-        let parts = Parts { plan, inputs: &self.inputs, light };
+        let parts = Parts { plan, inputs: &self.inputs };
         share_out(level, self.set_up.sorted(), &parts, &mut self.bins, watch);
     }
 
@@ -284,14 +274,9 @@ impl ScreenGeometry {
             self.lines.add((i, draw), (What::Normals, normals.len()), plan, position);
         }
         if self.lines.len() > 0 {
-            let parts = Parts { plan, inputs: &self.inputs, light: None };
+            let parts = Parts { plan, inputs: &self.inputs };
             share_out(level, self.lines.sorted(), &parts, &mut self.bins, watch);
         }
-    }
-
-    /// Drops the colours of hits, which belong to the frame that the geometry was built for.
-    pub(crate) fn forget_colors(&mut self) {
-        self.bins.iter_mut().for_each(|bins| bins.hits.colored = false);
     }
 
     /// Distributes the tiles of the picture. Each thread mostly draws triangles it has set up.

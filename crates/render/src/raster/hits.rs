@@ -74,16 +74,6 @@ impl Page {
     }
 }
 
-/// The [colours](super::hit_colors) of the hits of a page. The extra entries shift each page to
-/// other cache sets than the page before.
-#[derive(Clone, Debug)]
-#[repr(align(64))]
-struct ColorRow([u32; PAGE + PACK]);
-
-impl ColorRow {
-    const NONE: Self = Self([0; PAGE + PACK]);
-}
-
 /// One pixel of each of sixteen primitives.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Pixels<S: Simd> {
@@ -93,8 +83,6 @@ pub(crate) struct Pixels<S: Simd> {
     pub(crate) depth: u32x16<S>,
     /// The number of the primitive.
     pub(crate) number: u32x16<S>,
-    /// The colour, or 0 if unknown; `None` if hits have no colours.
-    pub(crate) color: Option<u32x16<S>>,
 }
 
 /// The tiles that sixteen primitives may reach into.
@@ -118,12 +106,8 @@ pub(crate) struct Hits {
     /// The last page of each tile.
     last: Vec<u32>,
     pages: Vec<Page>,
-    /// The colours of each page's hits, if hits have colours.
-    colors: Vec<ColorRow>,
     /// The number of pages in use.
     used: usize,
-    /// Whether hits have colours. If set before hits are added, colours are stored with them.
-    pub(crate) colored: bool,
 }
 
 impl Default for Hits {
@@ -134,10 +118,8 @@ impl Default for Hits {
             tiles: [0; 2],
             last: Vec::new(),
             pages,
-            colors: Vec::new(),
             // Page 0 is the sentinel.
             used: 1,
-            colored: false,
         }
     }
 }
@@ -150,7 +132,6 @@ impl Hits {
         self.last.clear();
         self.last.resize(usize::try_from(tiles[0] * tiles[1]).expect("not negative"), FULL);
         self.used = 1;
-        self.colored = false;
     }
 
     /// Returns whether a tile has no hits.
@@ -196,10 +177,6 @@ impl Hits {
         // The common case: all hits go to one tile, and no lane has to be masked out.
         if let Reach::One(tile) = *reach {
             let place = lanes_place(x & (TILE - 1), y & (TILE - 1), sample).bitcast();
-            // Adding hits moves the next place, so their colours are stored before.
-            if let Some(color) = pixels.color {
-                color.store_slice(self.next_colors(tile));
-            }
             self.page(tile).add_first(place, pixels, count);
         } else {
             let covered = mask32x16::from_bitmask(x.simd, (1 << count) - 1);
@@ -221,7 +198,7 @@ impl Hits {
         let (column, row) = (x >> 6, y >> 6);
         let [width, height] = self.extent;
         match *reach {
-            Reach::One(tile) => self.add_to(tile, place, pixels, covered),
+            Reach::One(tile) => self.page(tile).add(place, pixels, covered),
             // A few tiles: the mask of each tile is compressed separately.
             Reach::Few(tiles) => {
                 let covered = covered & x.simd_lt(width) & y.simd_lt(height);
@@ -230,7 +207,7 @@ impl Hits {
                         let some = covered & row.simd_eq(own_row) & column.simd_eq(own_column);
                         if some.any_true() {
                             let tile = (own_row * self.tiles[0] + own_column) as usize;
-                            self.add_to(tile, place, pixels, some);
+                            self.page(tile).add(place, pixels, some);
                         }
                     }
                 }
@@ -240,11 +217,7 @@ impl Hits {
                 let inside = x.simd_ge(0) & y.simd_ge(0) & x.simd_lt(width) & y.simd_lt(height);
                 let tile = row * self.tiles[0] + column;
                 for lane in Bits((covered & inside).to_bitmask()) {
-                    let tile = tile[lane] as usize;
-                    if let Some(color) = pixels.color {
-                        self.next_colors(tile)[0] = color[lane];
-                    }
-                    let page = self.page(tile);
+                    let page = self.page(tile[lane] as usize);
                     let at = page.count;
                     page.place[at] = place[lane];
                     page.word[at] = word(pixels.depth[lane], pixels.number[lane]);
@@ -252,28 +225,6 @@ impl Hits {
                 }
             }
         }
-    }
-
-    /// Adds the hits of a mask, out of sixteen, to a tile.
-    #[inline(always)]
-    fn add_to<S: Simd>(
-        &mut self,
-        tile: usize,
-        place: u32x16<S>,
-        pixels: &Pixels<S>,
-        some: mask32x16<S>,
-    ) {
-        if let Some(color) = pixels.color {
-            color.compress(some).store_slice(self.next_colors(tile));
-        }
-        self.page(tile).add(place, pixels, some);
-    }
-
-    /// Returns the colours of the sixteen hits added to a tile next.
-    #[inline(always)]
-    fn next_colors(&mut self, tile: usize) -> &mut [u32] {
-        let at = self.page(tile).count;
-        &mut self.colors[self.last[tile] as usize].0[at..at + PACK]
     }
 
     /// Returns a page of a tile with room for sixteen hits.
@@ -295,9 +246,6 @@ impl Hits {
         if self.used == self.pages.len() {
             self.pages.push(Page::new(0));
         }
-        if self.colored && self.colors.len() < self.pages.len() {
-            self.colors.resize(self.pages.len(), ColorRow::NONE);
-        }
         let new = u32::try_from(self.used).expect("fewer than 2^32 pages");
         let page = &mut self.pages[self.used];
         page.count = 0;
@@ -314,47 +262,31 @@ impl Hits {
         tile: usize,
         mut take: impl FnMut(u32, u64),
     ) {
-        self.each_page(
-            (format, simd),
-            tile,
-            #[inline(always)]
-            |places, words, _| {
-                places.iter().zip(words).for_each(
-                    #[inline(always)]
-                    |(place, word)| take(*place, *word),
-                );
-            },
-        );
-    }
-
-    /// Calls `take` with each page of a tile: the indices and entries of its hits, and their
-    /// colours if hits have any.
-    #[inline(always)]
-    pub(crate) fn each_page<S: Simd, D: Format>(
-        &self,
-        (format, simd): (D, S),
-        tile: usize,
-        mut take: impl FnMut(&[u32], &[u64; PAGE], &[u32]),
-    ) {
         let mut page = self.last[tile];
         while page != FULL {
             let Page { place, word, count, previous } = &self.pages[page as usize];
-            let colors = self.colors.get(page as usize).map_or(&[][..], |row| &row.0);
             // Fetched while this page is read.
             self.pages[*previous as usize].prefetch();
             if D::KEEPS_BITS {
-                take(&place[..*count], word, colors);
+                place[..*count].iter().zip(word).for_each(
+                    #[inline(always)]
+                    |(place, word)| take(*place, *word),
+                );
             } else {
                 // Hits store the bits of depths. Other formats convert them here, where each is
                 // read once.
-                let mut words = [0; PAGE];
-                for at in (0..*count).step_by(PACK) {
-                    let (depth, number) = keys_and_numbers(simd, &word[at..at + PACK]);
+                for (places, words) in place[..*count].chunks(PACK).zip(word.as_chunks::<PACK>().0)
+                {
+                    let (depth, number) = keys_and_numbers(simd, words);
                     let lines = (number >> 31) * format.lines_nearer();
                     let keys = format.keys(depth.bitcast()) + lines;
-                    put_words(keys, number, &mut words[at..at + PACK]);
+                    let mut words = [0; PACK];
+                    put_words(keys, number, &mut words);
+                    places.iter().zip(words).for_each(
+                        #[inline(always)]
+                        |(place, word)| take(*place, word),
+                    );
                 }
-                take(&place[..*count], &words, colors);
             }
             page = *previous;
         }

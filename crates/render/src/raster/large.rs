@@ -44,8 +44,7 @@ pub(crate) struct Large {
     pub(crate) number: u32,
 }
 
-/// The treatment of pixels that pass the depth test: holes let the surface behind show through, and
-/// pixels with known light are coloured.
+/// The treatment of pixels that pass the depth test: holes let the surface behind show through.
 pub(crate) trait InFront<S: Simd> {
     /// Whether the treatment does anything.
     const MATTERS: bool = true;
@@ -62,7 +61,7 @@ pub(crate) trait InFront<S: Simd> {
     ) -> u64;
 }
 
-/// An opaque triangle without colours: no treatment.
+/// A triangle without holes: no treatment.
 pub(crate) struct Solid;
 
 impl<S: Simd> InFront<S> for Solid {
@@ -221,7 +220,7 @@ impl Large {
             let depth = self.clamped(self.depth_at(upper).narrow(self.depth_at(lower)));
             let covered = (covered[0] & 0xff) | (covered[1] & 0xff) << 8;
             let mut covered = mask32x16::from_bitmask(simd, covered);
-            // Holes and colours only matter in pixels that pass the depth test.
+            // Holes only matter in pixels that pass the depth test.
             if I::MATTERS {
                 let front = in_front(format, simd, covered, depth, self.number, visibility);
                 if front == 0 {

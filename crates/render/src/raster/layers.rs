@@ -26,6 +26,7 @@ use super::large::{BlockTriangle, Large, Touched};
 use super::scan_lines::ScanLines;
 use crate::ancestors::points;
 use crate::frame::FramePlan;
+use crate::frame::raster_mode::RasterMode;
 use crate::screen::coverage::{Grid, PixelBox, Triangle};
 use crate::screen::sample_positions::{MANY, SamplePositions};
 use crate::screen::tiles::{BLOCK_PIXELS, block_at, within};
@@ -114,7 +115,8 @@ impl Layers {
         (tile, bounds): (usize, PixelBox),
     ) {
         (self.sample_positions, self.bounds) = (frame.sample_positions(), bounds);
-        (self.depth_format, self.grid) = (plan.variants.depth, plan.variants.grid());
+        let RasterMode { depth, grid, .. } = plan.raster_mode();
+        (self.depth_format, self.grid) = (depth, grid);
         (self.touched, self.depths) = (0, [f32::INFINITY, 0.0]);
         self.hits.iter_mut().for_each(Vec::clear);
         self.hits.resize_with(MANY * BLOCK_PIXELS, Vec::new);
@@ -128,11 +130,11 @@ impl Layers {
             }));
             for &number in &bins.tiles[tile].large {
                 let triangle = &bins.large[number as usize];
-                // Only the variants of coverage list unsnapped corners.
+                // Exact coverage alone lists no unsnapped corners.
                 match bins.unsnapped.get(number as usize) {
                     None => self.add_large(level, triangle),
                     Some(corners) => {
-                        self.add_variant(level, (plan, frame), (triangle, *corners));
+                        self.add_by_rule(level, (plan, frame), (triangle, *corners));
                     }
                 }
             }
@@ -162,8 +164,8 @@ impl Layers {
         self.add_blocks(level, BlockTriangle::Large(large), area);
     }
 
-    /// Adds a triangle by the selected variant of coverage.
-    fn add_variant(
+    /// Adds a triangle by another rule of coverage.
+    fn add_by_rule(
         &mut self,
         level: Level,
         (plan, frame): (&FramePlan, &ScreenGeometry),
@@ -171,7 +173,8 @@ impl Layers {
     ) {
         self.add_depths(triangle);
         let depths = each(triangle.corners, |corner| corner.depth);
-        match plan.variants.coverage {
+        let coverage = plan.raster_mode().coverage;
+        match coverage {
             Coverage::Points => self.add_points(plan, frame, triangle.number),
             // Scan lines round corners, so each sample has separate rows.
             Coverage::ScanLines => {
@@ -189,7 +192,7 @@ impl Layers {
             Coverage::Exact | Coverage::F32Edges => {
                 let reach = self.sample_positions.reach::<MANY>();
                 // Rounding may cover centres beyond the box, so the box is enlarged.
-                let reach = beyond::reach(plan.variants.coverage, reach);
+                let reach = beyond::reach(coverage, reach);
                 let at = each(triangle.corners, |corner| corner.at());
                 let reached = PixelBox::reached(at, reach);
                 let Some(area) = reached.in_tile(self.bounds) else { return };

@@ -317,11 +317,7 @@ pub(crate) fn draw_short<S: Simd>(a: Ends<S>, b: Ends<S>, lines: &Short<S>, hits
         for side in 0..lines.width {
             let v = v + side;
             let (x, y) = (steep.select(v, u), steep.select(u, v));
-            let color = hits.colored.then(
-                #[inline(always)]
-                || u32x16::splat(x.simd, 0),
-            );
-            let pixels = Pixels { x, y, depth, number: lines.number, color };
+            let pixels = Pixels { x, y, depth, number: lines.number };
             hits.add(&reach, (&pixels, lines.sample), covered);
         }
     }

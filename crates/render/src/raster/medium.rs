@@ -5,15 +5,13 @@
 //! in f64, which holds these integers exactly.
 
 use fearless_simd::{
-    Select as _, Simd, SimdBase as _, SimdInt as _, SimdMask as _, SimdNarrow as _, f32x16, f64x8,
-    i32x16,
+    Select as _, Simd, SimdBase as _, SimdMask as _, SimdNarrow as _, f32x16, f64x8, i32x16,
 };
 
 use super::bins::LargeTriangle;
 use super::depth_format::Format;
 use super::large::Touched;
-use super::paint::Painted;
-use super::visibility_buffer::{in_front, put_rows};
+use super::visibility_buffer::put_rows;
 use crate::screen::coverage::{PixelBox, SUBPIXELS};
 use crate::screen::sample_positions::SamplePositions;
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE};
@@ -153,8 +151,8 @@ impl<S: Simd> Medium<S> {
         touched
     }
 
-    /// Draws the triangle into the rows of a block that `area` reaches into, and paints the pixels
-    /// that pass the depth test. `area` is in pixels relative to the tile's first.
+    /// Draws the triangle into the rows of a block that `area` reaches into. `area` is in pixels
+    /// relative to the tile's first.
     #[inline(always)]
     pub(crate) fn draw(
         &self,
@@ -162,7 +160,6 @@ impl<S: Simd> Medium<S> {
         simd: S,
         block: usize,
         area: PixelBox,
-        mut painted: Option<Painted<'_>>,
         visibility: &mut [u64; BLOCK_PIXELS],
     ) {
         let block = i32::try_from(block % BLOCK_PIXELS).unwrap_or(0);
@@ -182,15 +179,7 @@ impl<S: Simd> Medium<S> {
             if covered.any_true() {
                 let (second, third) = (b + self.least[0], c + self.least[1]);
                 let depth = self.depths(simd, second, third);
-                let pair = pair as usize % 4;
-                let entries = &mut pairs[pair];
-                // Painting needs the depth test before the entries are overwritten.
-                if let Some(painted) = &mut painted {
-                    let front = in_front(format, simd, covered, depth, self.number, entries);
-                    if front != 0 {
-                        painted.put(pair, front, [second.to_float(), third.to_float()]);
-                    }
-                }
+                let entries = &mut pairs[pair as usize % 4];
                 put_rows(format, simd, covered, depth, self.number, entries);
             }
             (a, b, c) = (a + two_down(0), b + two_down(1), c + two_down(2));

@@ -2,11 +2,10 @@
 //!
 //! `geometry` transforms the `vertices` of a frame. Threads then set up its `parts`, one piece of
 //! `work` after another: `setup` and `edges` put possibly visible primitives into `bins` (tile
-//! binning). `small` rasterises small triangles immediately, to `hits`, which may have
-//! `hit_colors`. With several samples per pixel, they wait for their tile in `tile_queues` instead.
-//! A `tile` then draws its hits and queues, `large` triangles, which may have a `paint`, and
-//! `lines`, all with a depth test. The nearest primitive stays in the `visibility_buffer`. `layers`
-//! are the transparent triangles in front of it.
+//! binning). `small` rasterises small triangles immediately, to `hits`. With several samples per
+//! pixel, they wait for their tile in `tile_queues` instead. A `tile` then draws its hits and
+//! queues, `large` triangles and `lines`, all with a depth test. The nearest primitive stays in the
+//! `visibility_buffer`. `layers` are the transparent triangles in front of it.
 //!
 //! Alternatives selected by the settings are variants of the same kernels: each `rule` of coverage
 //! and each `depth_format` is a type that kernels are compiled for. `vertex_variants` transforms
@@ -23,7 +22,6 @@ mod edges_in_floats;
 pub(crate) mod entries;
 mod facing;
 pub(crate) mod geometry;
-pub(crate) mod hit_colors;
 pub(crate) mod hits;
 mod hole_tables;
 pub(crate) mod inputs;
@@ -31,7 +29,6 @@ mod large;
 pub(crate) mod layers;
 pub(crate) mod lines;
 mod medium;
-pub(crate) mod paint;
 mod parts;
 mod queue;
 mod rule;

@@ -9,7 +9,6 @@ use super::bins::Bins;
 use super::culling::Culling;
 use super::edges::EdgeSetup;
 use super::facing::Facing;
-use super::hit_colors::{Brush, CornerLight};
 use super::inputs::{Inputs, number};
 use super::rule::with_rule;
 use super::setup::{self, Setup};
@@ -32,15 +31,14 @@ pub(crate) fn share_out(
     let all: Vec<Mutex<&mut Bins>> = bins.iter_mut().map(Mutex::new).collect();
     together(all.len(), || {
         let bins = &mut own(&all);
-        let brush = &mut Brush::new(parts.light, parts.inputs);
         while let Some(work) = shares.next().map(|i| &work[i]) {
             if !watch.goes_on() {
                 return;
             }
-            parts.run(level, work, bins, brush);
+            parts.run(level, work, bins);
         }
         // The queues hold fewer than a full batch at the end.
-        with_rule!(parts.plan.variants, R => setup::finish::<R>(level, bins, brush));
+        with_rule!(parts.plan.raster_mode(), R => setup::finish::<R>(level, bins));
     });
 }
 
@@ -49,12 +47,10 @@ pub(crate) fn share_out(
 pub(crate) struct Parts<'a> {
     pub(crate) plan: &'a FramePlan,
     pub(crate) inputs: &'a Inputs,
-    /// The light at corners, if hits have colours.
-    pub(crate) light: Option<&'a dyn CornerLight>,
 }
 
 impl Parts<'_> {
-    fn run(&self, level: Level, work: &Work<What>, bins: &mut Bins, brush: &mut Brush<'_>) {
+    fn run(&self, level: Level, work: &Work<What>, bins: &mut Bins) {
         let Work { draw: i, what, from, to, .. } = *work;
         let Self { plan, inputs, .. } = *self;
         let (draw, start) = (&plan.draws[i], inputs.starts[i]);
@@ -64,21 +60,21 @@ impl Parts<'_> {
         let outlines = inputs.outlines_of(plan, i);
         match what {
             What::Triangles => {
-                // The screen corners of this draw, on the grid and with the variants of the frame.
+                // The screen corners of this draw, on the grid of the frame.
                 let mut setup = Setup::new(plan, draw, inputs.corners_of(i), start.number);
                 setup.unsnapped = inputs.vertices.unsnapped.get(start.vertex..).unwrap_or_default();
                 setup.holes = inputs.holes.of_draw(i);
                 // Cluster culling removes whole ranges before any triangle is set up.
                 let order = mesh.draw_order();
                 let triangles = &order.triangles[from..to];
-                with_rule!(plan.variants, R => if order.clusters.is_empty() {
-                    setup.run::<R>(level, triangles, (bins, brush));
+                with_rule!(plan.raster_mode(), R => if order.clusters.is_empty() {
+                    setup.run::<R>(level, triangles, bins);
                 } else {
                     // Pieces begin at whole clusters.
                     let clusters = &order.clusters[from / CLUSTER..];
                     let culling = Culling::new(draw, setup.screen, plan.size);
                     culling.each_left(clusters, triangles, |some| {
-                        setup.run::<R>(level, some, (bins, brush));
+                        setup.run::<R>(level, some, bins);
                     });
                 });
             }
@@ -105,7 +101,7 @@ impl Parts<'_> {
     fn edge_setup(&self, i: usize) -> EdgeSetup<'_> {
         let Self { plan, inputs, .. } = *self;
         let (draw, first) = (&plan.draws[i], inputs.starts[i].line);
-        let grid = plan.variants.grid();
+        let grid = plan.raster_mode().grid;
         let screen = Screen::new(draw.clip_from_object, plan.viewport).on(grid);
         let screen = screen.seen_from(grid.offset(plan.shift));
         let (vertices, outlines) = (inputs.corners_of(i), inputs.outlines_of(plan, i));

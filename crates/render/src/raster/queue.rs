@@ -18,8 +18,6 @@ pub(crate) type Pack<S> = [i32x16<S>; ROWS];
 #[repr(align(64))]
 pub(crate) struct Queue {
     rows: [[i32; WAITING + PACK]; ROWS],
-    /// The vertices of the triangles' corners, if hits have colours.
-    vertices: [[i32; WAITING + PACK]; 3],
     pub(super) count: usize,
 }
 
@@ -29,27 +27,21 @@ pub(super) const WAITING: usize = 128;
 impl Default for Queue {
     fn default() -> Self {
         let row = [0; WAITING + PACK];
-        Self { rows: [row; ROWS], vertices: [row; 3], count: 0 }
+        Self { rows: [row; ROWS], count: 0 }
     }
 }
 
 impl Queue {
-    /// Adds some of sixteen triangles, and the vertices of their corners if hits have colours.
-    /// Returns whether the queue is full.
+    /// Adds some of sixteen triangles. Returns whether the queue is full.
     #[inline(always)]
     pub(crate) fn add<S: Simd>(
         &mut self,
-        (pack, vertices): (&Pack<S>, Option<&[i32x16<S>; 3]>),
+        pack: &Pack<S>,
         some: mask32x16<S>,
         count: usize,
     ) -> bool {
         // The count is below WAITING here; the remainder only saves bounds checks.
         let at = self.count % WAITING;
-        if let Some(vertices) = vertices {
-            for (row, values) in self.vertices.iter_mut().zip(vertices) {
-                values.compress(some).store_slice(&mut row[at..at + PACK]);
-            }
-        }
         for (row, values) in self.rows.iter_mut().zip(pack) {
             values.compress(some).store_slice(&mut row[at..at + PACK]);
         }
@@ -88,16 +80,6 @@ impl Queue {
         pack
     }
 
-    /// Returns the vertices of sixteen triangles, corner by corner, starting at `at`.
-    #[inline(always)]
-    pub(super) fn vertices(&self, at: usize) -> [[u32; PACK]; 3] {
-        let mut vertices = [[0; PACK]; 3];
-        for (to, row) in vertices.iter_mut().zip(&self.vertices) {
-            to.copy_from_slice(bytemuck::cast_slice(&row[at..at + PACK]));
-        }
-        vertices
-    }
-
     /// Removes up to [`WAITING`] triangles and moves the rest to the front.
     #[inline(always)]
     pub(super) fn forget(&mut self) {
@@ -106,7 +88,7 @@ impl Queue {
             return;
         }
         // A full queue overflows by fewer than sixteen triangles.
-        for row in self.rows.iter_mut().chain(&mut self.vertices) {
+        for row in &mut self.rows {
             let (first, others) = row.split_at_mut(WAITING);
             first[..PACK].copy_from_slice(others);
         }

@@ -63,8 +63,8 @@ impl Rule for Unsnapped {
 
 /// Evaluates an expression with the rule of coverage of a frame.
 macro_rules! with_rule {
-    ($variants:expr, $rule:ident => $what:expr) => {
-        match ($variants.coverage, $variants.grid()) {
+    ($mode:expr, $rule:ident => $what:expr) => {
+        match ($mode.coverage, $mode.grid) {
             (marraztu_core::accuracy::Coverage::Exact, $crate::screen::coverage::Grid::Usual) => {
                 type $rule = $crate::raster::rule::Usual;
                 $what

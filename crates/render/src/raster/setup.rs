@@ -11,7 +11,6 @@ use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, i32x16, mask32x16
 
 use super::beyond;
 use super::bins::{Bins, LargeTriangle};
-use super::hit_colors::Brush;
 use super::hits::PACK;
 use super::queue::{Pack, SMALL};
 use super::rule::Rule;
@@ -20,6 +19,7 @@ use super::vertices::{fetch, fetch_corners};
 use crate::accel::{DrawOrder, DrawTriangle};
 use crate::frame::FramePlan;
 use crate::frame::draw::{Back, Draw, Pipeline, Shaded};
+use crate::frame::raster_mode::RasterMode;
 use crate::screen::clip::{Screen, ScreenVertex};
 use crate::screen::coverage::{PixelBox, doubled_area};
 use crate::screen::sample_positions::MANY;
@@ -69,7 +69,8 @@ impl<'a> Setup<'a> {
         vertices: &'a [ScreenVertex],
         base: u32,
     ) -> Self {
-        let (pipelines, grid) = (&plan.pipelines, plan.variants.grid());
+        let RasterMode { grid, coverage, .. } = plan.raster_mode();
+        let pipelines = &plan.pipelines;
         let transparent =
             draw.uniform.is_some_and(|pipeline| pipelines[pipeline as usize].opacity().is_some());
         // If no triangle differs from the others, none has to be looked at separately.
@@ -91,22 +92,17 @@ impl<'a> Setup<'a> {
             choosy,
             transparent,
             unsnapped: &[],
-            coverage: plan.variants.coverage,
+            coverage,
             holes: &[],
         }
     }
 
     /// Sets up some of the draw's triangles into bins.
-    pub(crate) fn run<R: Rule>(
-        &self,
-        level: Level,
-        triangles: &[DrawTriangle],
-        into: (&mut Bins, &mut Brush<'_>),
-    ) {
-        if into.0.sample_positions.are_many() {
-            dispatch!(level, simd => self.all::<_, R, MANY>(simd, triangles, into));
+    pub(crate) fn run<R: Rule>(&self, level: Level, triangles: &[DrawTriangle], bins: &mut Bins) {
+        if bins.sample_positions.are_many() {
+            dispatch!(level, simd => self.all::<_, R, MANY>(simd, triangles, bins));
         } else {
-            dispatch!(level, simd => self.all::<_, R, 1>(simd, triangles, into));
+            dispatch!(level, simd => self.all::<_, R, 1>(simd, triangles, bins));
         }
     }
 
@@ -115,7 +111,7 @@ impl<'a> Setup<'a> {
         &self,
         simd: S,
         triangles: &[DrawTriangle],
-        (bins, brush): (&mut Bins, &mut Brush<'_>),
+        bins: &mut Bins,
     ) {
         for some in triangles.chunks(PACK) {
             // The last pack is filled up with copies, which are masked out by the count.
@@ -124,7 +120,7 @@ impl<'a> Setup<'a> {
                 last[..some.len()].copy_from_slice(some);
                 &last
             });
-            self.sixteen::<S, R, N>(simd, (sixteen, some.len()), bins, brush);
+            self.sixteen::<S, R, N>(simd, (sixteen, some.len()), bins);
         }
     }
 
@@ -135,7 +131,6 @@ impl<'a> Setup<'a> {
         simd: S,
         (triangles, count): (&[DrawTriangle; PACK], usize),
         bins: &mut Bins,
-        brush: &mut Brush<'_>,
     ) {
         let [x0, y0, d0, _] = fetch_corners(simd, self.vertices, triangles, 0);
         let [x1, y1, d1, _] = fetch_corners(simd, self.vertices, triangles, 1);
@@ -177,7 +172,7 @@ impl<'a> Setup<'a> {
         let plain = seen & faces & there & !odd;
         // Only the surviving triangles are copied into queues or bins.
         if plain.any_true() {
-            let [v0, v1, v2, number] = fetch(
+            let [_, _, _, number] = fetch(
                 simd,
                 #[inline(always)]
                 |lane| triangles[lane].row(),
@@ -195,18 +190,17 @@ impl<'a> Setup<'a> {
             // Front faces run counter-clockwise (negative area), or clockwise if mirrored.
             let front = if self.draw.mirrored { area.simd_gt(0) } else { area.simd_lt(0) };
             let (plain, front) = (plain.to_bitmask(), front.to_bitmask());
-            let clockwise = area.simd_gt(0).to_bitmask();
             for (some, cutout, transparent) in self.kinds(triangles, plain, front) {
                 if some | cutout != 0 {
-                    let visible = (mask32x16::from_bitmask(simd, some), cutout, clockwise);
-                    let rows = (&pack, &[v0, v1, v2], boxes);
-                    self.sort::<S, R, N>(triangles, rows, visible, bins.of(transparent), brush);
+                    let visible = (mask32x16::from_bitmask(simd, some), cutout);
+                    let rows = (&pack, boxes);
+                    self.sort::<S, R, N>(triangles, rows, visible, bins.of(transparent));
                 }
             }
         }
         // Triangles that need clipping or 64 bits are set up one by one.
         for lane in Bits(odd.to_bitmask()) {
-            self.add_odd::<R, N>(&triangles[lane], (bins, brush));
+            self.add_odd::<R, N>(&triangles[lane], bins);
         }
     }
 
@@ -232,16 +226,14 @@ impl<'a> Setup<'a> {
 
     /// Sorts visible triangles by the larger side of their bounding boxes: into this thread's
     /// queues of small triangles, into the queues of the tiles they reach into, or to the large
-    /// triangles. The masks mark triangles without the alpha test, with it, and clockwise on the
-    /// screen.
+    /// triangles. The masks mark triangles without the alpha test and with it.
     #[inline(always)]
     fn sort<S: Simd, R: Rule, const N: usize>(
         &self,
         triangles: &[DrawTriangle; PACK],
-        (pack, vertices, boxes): (&Pack<S>, &[i32x16<S>; 3], [i32x16<S>; 4]),
-        (plain, cutout, clockwise): (mask32x16<S>, u64, u64),
+        (pack, boxes): (&Pack<S>, [i32x16<S>; 4]),
+        (plain, cutout): (mask32x16<S>, u64),
         bins: &mut Bins,
-        brush: &mut Brush<'_>,
     ) {
         let [left, top, right, bottom] = boxes;
         let side = (right - left).max(bottom - top);
@@ -263,9 +255,8 @@ impl<'a> Setup<'a> {
                 bins.tile_queues.add(queue, (pack, &tiles), some);
                 continue;
             }
-            let vertices = bins.hits.colored.then_some(vertices);
-            if bins.queues[queue].add((pack, vertices), some, count) {
-                small::draw_queue::<S, R, N>(side.simd, queue, bins, brush);
+            if bins.queues[queue].add(pack, some, count) {
+                small::draw_queue::<S, R, N>(side.simd, queue, bins);
             }
         }
         // The remaining triangles are large or alpha-tested.
@@ -274,15 +265,10 @@ impl<'a> Setup<'a> {
             let corners = each(triangles[lane].vertices, |i| self.vertices[i as usize]);
             let number = self.base + triangles[lane].number;
             let cutout = cutout >> lane & 1 != 0;
-            // These lists are filled before the triangle is added, so their indices match.
+            // This list is filled before the triangle is added, so that its indices match.
             if R::UNSNAPPED {
                 let own = each(triangles[lane].vertices, |i| self.unsnapped[i as usize]);
                 bins.unsnapped.push(own);
-            }
-            if N == 1 && bins.hits.colored {
-                let clockwise = clockwise >> lane & 1 == 1;
-                let colors = brush.corners(number, triangles[lane].vertices, clockwise);
-                bins.color_next(colors);
             }
             self.add_large::<R, N>(LargeTriangle { corners, number, cutout }, bins);
         }
@@ -347,11 +333,7 @@ impl<'a> Setup<'a> {
     }
 
     /// Adds a triangle that needs clipping, or 64 bits for its area.
-    fn add_odd<R: Rule, const N: usize>(
-        &self,
-        triangle: &DrawTriangle,
-        (bins, brush): (&mut Bins, &mut Brush<'_>),
-    ) {
+    fn add_odd<R: Rule, const N: usize>(&self, triangle: &DrawTriangle, bins: &mut Bins) {
         let kind = self.kind(triangle.number);
         if kind == Kind::Not {
             return;
@@ -359,8 +341,7 @@ impl<'a> Setup<'a> {
         let vertices = triangle.vertices.map(|vertex| self.vertices[vertex as usize]);
         // Clipping returns a convex polygon, drawn as a fan of triangles around its first corner.
         let (mut pieces, mut unsnapped) = (Vec::new(), Vec::new());
-        let is_whole = vertices.iter().all(ScreenVertex::is_inside);
-        if is_whole {
+        if vertices.iter().all(ScreenVertex::is_inside) {
             pieces.extend(vertices);
             if R::UNSNAPPED {
                 unsnapped.extend(triangle.vertices.map(|i| self.unsnapped[i as usize]));
@@ -385,10 +366,6 @@ impl<'a> Setup<'a> {
             let bins = bins.of(kind == Kind::Transparent);
             let number = self.base + triangle.number;
             let cutout = kind == Kind::Cutout;
-            // Pieces of a clipped triangle have new corners, without known colours.
-            if N == 1 && is_whole && bins.hits.colored {
-                bins.color_next(brush.corners(number, triangle.vertices, area > 0));
-            }
             if R::UNSNAPPED {
                 bins.unsnapped.push([unsnapped[0], unsnapped[i - 1], unsnapped[i]]);
             }
@@ -427,16 +404,16 @@ impl<'a> Setup<'a> {
 }
 
 /// Draws the small triangles that are still waiting.
-pub(crate) fn finish<R: Rule>(level: Level, bins: &mut Bins, brush: &mut Brush<'_>) {
+pub(crate) fn finish<R: Rule>(level: Level, bins: &mut Bins) {
     if bins.transparent().is_some() {
-        finish::<R>(level, bins.of(true), brush);
+        finish::<R>(level, bins.of(true));
     }
     let many = bins.sample_positions.are_many();
     dispatch!(level, simd => {
         for queue in 0..R::QUEUES {
             match many {
-                true => small::draw_queue::<_, R, MANY>(simd, queue, bins, brush),
-                false => small::draw_queue::<_, R, 1>(simd, queue, bins, brush),
+                true => small::draw_queue::<_, R, MANY>(simd, queue, bins),
+                false => small::draw_queue::<_, R, 1>(simd, queue, bins),
             }
         }
     });

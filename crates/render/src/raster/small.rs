@@ -11,13 +11,11 @@
 //! The edge functions depend on the rule of coverage: see `small_edges`.
 
 use fearless_simd::{
-    Bytes as _, Select as _, Simd, SimdBase as _, SimdInt as _, SimdMask as _, f32x16, i32x16,
-    mask32x16, u32x16,
+    Bytes as _, Select as _, Simd, SimdBase as _, SimdMask as _, f32x16, i32x16, mask32x16, u32x16,
 };
 
 use super::bins::Bins;
 use super::covered::{Covered, MOST, SAMPLES};
-use super::hit_colors::{Brush, Triangles};
 use super::hits::{PACK, Pixels};
 use super::queue::{Pack, SMALL};
 use super::rule::Rule;
@@ -31,69 +29,43 @@ use crate::simd::{Real, UP_TO_SIXTEEN};
 ///
 /// Compiled as a separate function because it is called from several places.
 #[inline(always)]
-pub(crate) fn draw_queue<S: Simd, R: Rule, const N: usize>(
-    simd: S,
-    queue: usize,
-    bins: &mut Bins,
-    brush: &mut Brush<'_>,
-) {
-    if N == 1 && bins.hits.colored {
-        simd.vectorize(
-            #[inline(always)]
-            || draw_packs::<S, R, 1, true>(simd, queue, bins, brush),
-        );
-    } else {
-        simd.vectorize(
-            #[inline(always)]
-            || draw_packs::<S, R, N, false>(simd, queue, bins, brush),
-        );
-    }
+pub(crate) fn draw_queue<S: Simd, R: Rule, const N: usize>(simd: S, queue: usize, bins: &mut Bins) {
+    simd.vectorize(
+        #[inline(always)]
+        || {
+            for at in (0..bins.queues[queue].waiting()).step_by(PACK) {
+                let pack = bins.queues[queue].pack(simd, at);
+                draw_pack::<S, R, N>(queue, &pack, bins);
+            }
+            bins.queues[queue].forget();
+        },
+    );
 }
 
+/// Draws sixteen triangles of a queue.
 #[inline(always)]
-fn draw_packs<S: Simd, R: Rule, const N: usize, const COLORED: bool>(
-    simd: S,
+pub(super) fn draw_pack<S: Simd, R: Rule, const N: usize>(
     queue: usize,
-    bins: &mut Bins,
-    brush: &mut Brush<'_>,
-) {
-    for at in (0..bins.queues[queue].waiting()).step_by(PACK) {
-        let pack = bins.queues[queue].pack(simd, at);
-        draw_pack::<S, R, N, COLORED>((queue, at), &pack, bins, brush);
-    }
-    bins.queues[queue].forget();
-}
-
-/// Draws sixteen triangles of a queue, starting at `at`.
-#[inline(always)]
-pub(super) fn draw_pack<S: Simd, R: Rule, const N: usize, const COLORED: bool>(
-    (queue, at): (usize, usize),
     pack: &Pack<S>,
     bins: &mut Bins,
-    brush: &mut Brush<'_>,
 ) {
     if queue + 1 == SMALL.len() {
-        draw::<S, R::LastEdges<S>, N, COLORED>((queue, at), pack, bins, brush);
+        draw::<S, R::LastEdges<S>, N>(pack, bins);
     } else {
-        draw::<S, R::Edges<S>, N, COLORED>((queue, at), pack, bins, brush);
+        draw::<S, R::Edges<S>, N>(pack, bins);
     }
 }
 
 #[inline(always)]
-fn draw<S: Simd, E: Edges<S>, const N: usize, const COLORED: bool>(
-    (queue, at): (usize, usize),
-    pack: &Pack<S>,
-    bins: &mut Bins,
-    brush: &mut Brush<'_>,
-) {
+fn draw<S: Simd, E: Edges<S>, const N: usize>(pack: &Pack<S>, bins: &mut Bins) {
     let simd = pack[0].simd;
     let sample_positions = bins.sample_positions;
     let lanes = Lanes::<S, E>::new(simd, pack, sample_positions.reach::<N>());
     // The tiles are found once for all sixteen triangles.
     let reach = bins.hits.reach(lanes.bounds());
-    let Bins { hits, covered, queues, .. } = bins;
+    let Bins { hits, covered, .. } = bins;
     let samples = sample_positions.count_in::<N>();
-    // One sample after the other: list the covered pixels, then compute depths and colours.
+    // One sample after the other: list the covered pixels, then compute depths.
     for sample in 0..samples {
         // A single sample lies at the centre, which saves adding its offset.
         let shift = match N {
@@ -101,35 +73,13 @@ fn draw<S: Simd, E: Edges<S>, const N: usize, const COLORED: bool>(
             _ => Some(lanes.edges.shift(sample_positions.shift::<N>(sample))),
         };
         lanes.scan(shift.as_slice(), covered);
-        let mut mix = None;
-        // Colours are only looked up if some pixel is covered.
-        if COLORED && covered.count > 0 {
-            let (per_area, clockwise) = areas(pack);
-            let triangles = Triangles {
-                numbers: &lanes.number.into(),
-                vertices: &queues[queue].vertices(at),
-                some: covered.lanes(),
-                clockwise,
-            };
-            mix = brush.mix(per_area, &triangles);
-        }
         lanes.each_pixel(
             covered,
             #[inline(always)]
             |own, count| {
                 let CoveredPixels { x, y, number, .. } = *own;
                 let depth = lanes.depths(own, shift.as_ref());
-                let color = match &mix {
-                    _ if !COLORED => None,
-                    Some(mix) if E::COLORED => {
-                        let at = (own.lanes, own.by, None);
-                        let edges = [lanes.edges.function(1, at), lanes.edges.function(2, at)];
-                        Some(mix.colors(own.lanes, edges, [x, y]))
-                    }
-                    // 0 is an unknown colour: the pixel is shaded later, if it is visible.
-                    _ => Some(u32x16::splat(simd, 0)),
-                };
-                let pixels = Pixels { x, y, depth: depth.bitcast(), number, color };
+                let pixels = Pixels { x, y, depth: depth.bitcast(), number };
                 hits.add_first(&reach, (&pixels, (sample, samples)), count);
             },
         );
@@ -176,15 +126,6 @@ impl<S: Simd, E: Edges<S>, const N: usize> SampledLanes<S, E, N> {
     pub(super) fn depths(&self, of: &CoveredPixels<S, E>, sample: usize) -> f32x16<S> {
         self.lanes.depths(of, Some(&self.shifts[sample % N]))
     }
-}
-
-/// Returns 1 / the doubled areas of sixteen triangles, and a mask of the clockwise ones on the
-/// screen.
-#[inline(always)]
-fn areas<S: Simd>([x0, y0, x1, y1, x2, y2, ..]: &Pack<S>) -> (f32x16<S>, u64) {
-    let area = (*x1 - *x0) * (*y2 - *y0) - (*y1 - *y0) * (*x2 - *x0);
-    let doubled: f32x16<S> = area.max(i32x16::splat(x0.simd, 0) - area).to_float();
-    (f32x16::splat(x0.simd, 1.0) / doubled, area.simd_gt(0).to_bitmask())
 }
 
 /// Sixteen small triangles, set up for rasterisation.
@@ -326,7 +267,7 @@ impl<S: Simd, E: Edges<S>> Lanes<S, E> {
             let number = permute(self.number.bitcast(), lanes).bitcast();
             let samples = pixels >> SAMPLES;
             let edges = self.edges.pixels(lanes, by);
-            let own = CoveredPixels { lanes, by, x, y, number, edges, low, high, samples };
+            let own = CoveredPixels { lanes, x, y, number, edges, low, high, samples };
             take(&own, (covered.count - at).min(PACK));
         }
     }
@@ -345,8 +286,6 @@ impl<S: Simd, E: Edges<S>> Lanes<S, E> {
 pub(super) struct CoveredPixels<S: Simd, E: Edges<S>> {
     /// The lanes of the pixels' triangles.
     lanes: i32x16<S>,
-    /// The distances from the first pixels of the boxes.
-    by: [i32x16<S>; 2],
     pub(super) x: i32x16<S>,
     pub(super) y: i32x16<S>,
     /// The numbers of the triangles.

@@ -44,8 +44,6 @@ pub(crate) trait Edges<S: Simd>: Copy {
     type Pixels;
     /// The grid of corners.
     const GRID: Grid = Grid::Usual;
-    /// Whether hits have colours by this rule.
-    const COLORED: bool = true;
 
     /// Returns boxes of the pixels that triangles may cover in samples at these offsets from
     /// centres.

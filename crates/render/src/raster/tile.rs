@@ -24,18 +24,16 @@ use crate::simd::dispatch;
 use fearless_simd::{Level, Simd};
 
 use self::cutouts::Cutouts;
-use self::hits::HitColors;
 use self::small::SmallTriangles;
 use super::bins::Bins;
 use super::depth_format::{Any, Format as _, depths_between, with_format};
 use super::entries::{FOUR, word};
 use super::geometry::ScreenGeometry;
-use super::hit_colors::Conversion;
 use super::large::BlockTriangle;
 use super::lines;
-use super::paint::Paint;
 use super::visibility_buffer::{Plane, depths_of};
 use crate::frame::FramePlan;
+use crate::frame::raster_mode::RasterMode;
 use crate::screen::coverage::{Grid, PixelBox};
 use crate::screen::sample_positions::{MANY, SamplePositions};
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, BLOCKS, PIXELS, block_at, within};
@@ -58,12 +56,6 @@ pub(crate) struct Visibility {
     shown: [u32; BLOCK_PIXELS],
     /// Triangles that cover a block fully.
     large: Vec<BlockTriangle>,
-    /// The colours of pixels in the blocks of `colored`.
-    colors: Box<HitColors>,
-    /// The blocks in which the last drawn primitives have colours, a bit for each.
-    colored: u64,
-    /// The colour of pixels without a primitive.
-    background: u32,
     /// The depth format.
     depth_format: DepthFormat,
     /// The grid of corners.
@@ -91,9 +83,6 @@ impl Default for Visibility {
             whole: 0,
             shown: [0; BLOCK_PIXELS],
             large: Vec::new(),
-            colors: Box::default(),
-            colored: 0,
-            background: 0,
             depth_format: DepthFormat::default(),
             grid: Grid::default(),
             farthest: [0; BLOCK_PIXELS],
@@ -111,14 +100,13 @@ impl Visibility {
         plan: &FramePlan,
         frame: &ScreenGeometry,
         (tile, bounds): (usize, PixelBox),
-        conversion: Option<Conversion<'_>>,
     ) {
         self.clear(bounds, frame.sample_positions());
-        self.background = u32::from_le_bytes(plan.background.opaque());
-        (self.depth_format, self.grid) = (plan.variants.depth, plan.variants.grid());
+        let RasterMode { depth, grid, .. } = plan.raster_mode();
+        (self.depth_format, self.grid) = (depth, grid);
         match self.sample_positions.are_many() {
-            true => self.draw_in::<MANY>(level, plan, frame, (tile, conversion)),
-            false => self.draw_in::<1>(level, plan, frame, (tile, conversion)),
+            true => self.draw_in::<MANY>(level, plan, frame, tile),
+            false => self.draw_in::<1>(level, plan, frame, tile),
         }
     }
 
@@ -128,12 +116,13 @@ impl Visibility {
         level: Level,
         plan: &FramePlan,
         frame: &ScreenGeometry,
-        (tile, conversion): (usize, Option<Conversion<'_>>),
+        tile: usize,
     ) {
         // Large opaque triangles come first: a block without entries can be noted as fully covered.
-        if plan.variants.coverage == Coverage::Exact {
+        let is_exact = plan.raster_mode().coverage == Coverage::Exact;
+        if is_exact {
             for bins in frame.bins() {
-                dispatch!(level, simd => self.draw_plain::<_, N>(simd, bins, (tile, conversion)));
+                dispatch!(level, simd => self.draw_plain::<_, N>(simd, bins, tile));
             }
         }
         // With one sample, small triangles are hits already.
@@ -149,9 +138,9 @@ impl Visibility {
         for bins in frame.bins() {
             dispatch!(level, simd => self.draw_hits::<_, N>(simd, bins, tile));
             // The other rules draw opaque and alpha-tested triangles in one pass.
-            if plan.variants.coverage != Coverage::Exact {
+            if !is_exact {
                 dispatch!(level, simd => {
-                    self.draw_by_variant::<_, N>(simd, (plan, frame), bins, tile);
+                    self.draw_by_rule::<_, N>(simd, (plan, frame), bins, tile);
                 });
                 self.draw_lines::<N>(level, bins, plan.line_width, tile);
                 continue;
@@ -171,7 +160,7 @@ impl Visibility {
     fn clear(&mut self, bounds: PixelBox, sample_positions: SamplePositions) {
         self.sample_positions = sample_positions;
         // Entries of blocks that are not `written` are never read, so the buffer is not cleared.
-        (self.written, self.whole, self.colored) = (0, 0, 0);
+        (self.written, self.whole) = (0, 0);
         self.large.clear();
         self.farthest.fill(0);
         self.bounds = bounds;
@@ -270,11 +259,10 @@ impl Visibility {
     }
 
     /// Makes the entries of a block valid for up to `N` samples per pixel, before something is
-    /// drawn into it. Drops the block's colours.
+    /// drawn into it.
     #[inline(always)]
     fn write<const N: usize>(&mut self, level: Level, block: usize) {
         let bit = 1 << block;
-        self.colored &= !bit;
         if self.written & bit == 0 {
             self.written |= bit;
             self.entries_mut::<N>(block).fill(0);
@@ -376,6 +364,27 @@ impl Visibility {
         Any(self.depth_format).key(depth)
     }
 
+    /// Draws the hits of a tile from the bins of one thread.
+    #[inline(always)]
+    fn draw_hits<S: Simd, const N: usize>(&mut self, simd: S, bins: &Bins, tile: usize) {
+        let samples = self.sample_positions.count_in::<N>();
+        with_format!(self.depth_format, D => bins.hits.each(
+            (D::of(self.depth_format), simd),
+            tile,
+            #[inline(always)]
+            |place, word| {
+                let place = place as usize % (N * PIXELS);
+                let block = place / (samples * BLOCK_PIXELS);
+                // Hits of one triangle are neighbours: the block is mostly valid already.
+                if self.written >> block & 1 == 0 {
+                    self.write::<N>(simd.level(), block);
+                }
+                let old = &mut self.buffer.0[place];
+                *old = word.max(*old);
+            },
+        ));
+    }
+
     /// Draws the long lines of a tile.
     #[inline(always)]
     fn draw_lines<const N: usize>(&mut self, level: Level, bins: &Bins, width: i32, tile: usize) {
@@ -401,42 +410,11 @@ impl Visibility {
 
     /// Draws the large triangles of a tile without the alpha test.
     #[inline(always)]
-    fn draw_plain<S: Simd, const N: usize>(
-        &mut self,
-        simd: S,
-        bins: &Bins,
-        (tile, conversion): (usize, Option<Conversion<'_>>),
-    ) {
-        // Colours are stored for a single sample per pixel only.
-        if let Some(conversion) = conversion.filter(|_| N == 1 && bins.hits.colored) {
-            return simd.vectorize(
-                #[inline(always)]
-                || self.paint_plain(simd, bins, (tile, conversion)),
-            );
-        }
+    fn draw_plain<S: Simd, const N: usize>(&mut self, simd: S, bins: &Bins, tile: usize) {
         for &number in &bins.tiles[tile].large {
             let large = &bins.large[number as usize];
             if !large.cutout {
-                self.draw_large::<S, N>(simd, large, None);
-            }
-        }
-    }
-
-    /// Draws the same triangles, with colours if they are known.
-    #[inline(always)]
-    fn paint_plain<S: Simd>(
-        &mut self,
-        simd: S,
-        bins: &Bins,
-        (tile, conversion): (usize, Conversion<'_>),
-    ) {
-        for &number in &bins.tiles[tile].large {
-            let large = &bins.large[number as usize];
-            if !large.cutout {
-                // Pieces of clipped triangles have no known colours; they are shaded later.
-                let colors = bins.large_colors.get(number as usize).and_then(Option::as_ref);
-                let paint = colors.map(|colors| Paint::new(large, colors, conversion));
-                self.draw_large::<S, 1>(simd, large, paint.as_ref());
+                self.draw_large::<S, N>(simd, large);
             }
         }
     }
@@ -450,9 +428,8 @@ fn plane_of(entries: &[u64], count: usize, sample: usize) -> Plane {
 
 mod cutout_fragments;
 mod cutouts;
-mod hits;
+mod other_rules;
 mod small;
 #[cfg(test)]
 mod tests;
 mod triangles;
-mod variants;

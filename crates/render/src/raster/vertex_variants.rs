@@ -8,35 +8,35 @@ use fearless_simd::{Level, Simd};
 
 use super::vertices;
 use crate::accel::DrawOrder;
-use crate::frame::variants::Variants;
+use crate::frame::raster_mode::RasterMode;
 use crate::screen::clip::{Screen, ScreenVertex, snapped};
-use crate::screen::coverage::{SUBPIXELS, Snapped};
-use marraztu_core::accuracy::{Subpixels, VertexArithmetic};
+use crate::screen::coverage::Snapped;
+use marraztu_core::accuracy::VertexArithmetic;
 
 /// Transforms vertices of a mesh to the screen, from number `first` on.
 pub(crate) fn transform(
-    variants: Variants,
+    mode: RasterMode,
     level: Level,
     screen: &Screen,
     order: &DrawOrder,
     first: usize,
     out: &mut [ScreenVertex],
 ) {
-    if variants.vertices == VertexArithmetic::F64 {
+    if mode.vertices == VertexArithmetic::F64 {
         vertices::transform(level, screen, order, first, out);
     } else {
         let (screen, rows) = (Screen32::new(screen), rows(order, first, out.len()));
         dispatch!(level, simd => chunk(simd, &screen, rows, out));
     }
     // Coarser subpixels come from a second rounding.
-    if matches!(variants.subpixels, Subpixels::Bits0 | Subpixels::Bits4) {
-        dispatch!(level, _ => coarse(variants, out));
+    if mode.step > 1 {
+        dispatch!(level, _ => coarse(mode.step, out));
     }
 }
 
 /// Transforms vertices of a mesh to pixels, from number `first` on, without snapping them.
 pub(crate) fn to_pixels(
-    variants: Variants,
+    mode: RasterMode,
     level: Level,
     screen: &Screen,
     order: &DrawOrder,
@@ -44,7 +44,7 @@ pub(crate) fn to_pixels(
     out: &mut [[f32; 2]],
 ) {
     let rows = rows(order, first, out.len());
-    if variants.vertices == VertexArithmetic::F64 {
+    if mode.vertices == VertexArithmetic::F64 {
         dispatch!(level, simd => pixels(simd, screen, rows, out));
     } else {
         let screen = Screen32::new(screen);
@@ -79,19 +79,14 @@ fn pixels32<S: Simd>(_: S, screen: &Screen32, [x, y, z]: [&[f32]; 3], out: &mut 
     }
 }
 
-/// Snaps vertices to coarser subpixels, if the settings choose them.
+/// Rounds vertices to multiples of some grid steps.
 #[inline(always)]
-fn coarse(variants: Variants, out: &mut [ScreenVertex]) {
-    let parts = match variants.subpixels {
-        Subpixels::Bits0 => SUBPIXELS,
-        Subpixels::Bits4 => SUBPIXELS / 16,
-        Subpixels::Bits8 | Subpixels::Bits12 => return,
-    };
+fn coarse(step: i32, out: &mut [ScreenVertex]) {
     for vertex in out {
         let Snapped { x, y } = vertex.at();
         // The nearest multiple of a power of two. A vertex beyond the planes may overflow, and
         // keeps its marker in x.
-        let snap = |i: i32| i.wrapping_add(parts / 2) & -parts;
+        let snap = |i: i32| i.wrapping_add(step / 2) & -step;
         let at = Snapped { x: if vertex.is_inside() { snap(x) } else { x }, y: snap(y) };
         *vertex = ScreenVertex::placed(at, vertex.depth, vertex.inverse_w);
     }
@@ -160,7 +155,8 @@ mod tests {
     use glam::{DMat4, DVec3};
 
     use super::*;
-    use marraztu_core::accuracy::Settings;
+    use crate::frame::variants::Variants;
+    use marraztu_core::accuracy::{Settings, Subpixels};
     use marraztu_core::base::image::Size;
     use marraztu_core::base::math;
 
@@ -170,7 +166,7 @@ mod tests {
         let size = Size::new(800, 800);
         let clip_from_view = math::perspective(22.5_f64.to_radians(), 1.0, 2000.0, size);
         let settings = Settings { vertices, ..Settings::default() };
-        let (mut worst, ways) = (0.0_f64, Variants::of(&settings));
+        let (mut worst, ways) = (0.0_f64, Variants::of(&settings).raster_mode());
         for i in 0..100 {
             let eye = DVec3::new(offset + 0.37 * f64::from(i), 0.61 * offset, -offset);
             let turn = DMat4::from_rotation_y(0.1 * f64::from(i));
@@ -209,18 +205,19 @@ mod tests {
     #[test]
     fn coarse_corners_are_the_nearest_of_their_parts() {
         for (subpixels, parts) in [(Subpixels::Bits0, 256), (Subpixels::Bits4, 16)] {
-            let ways = Variants::of(&Settings { subpixels, ..Settings::default() });
+            let settings = Settings { subpixels, ..Settings::default() };
+            let step = Variants::of(&settings).raster_mode().step;
             for x in -600..600 {
                 let vertex = ScreenVertex::placed(Snapped { x, y: -x }, 0.5, 0.25);
                 let mut all = [vertex];
-                coarse(ways, &mut all);
+                coarse(step, &mut all);
                 let Snapped { x: got, y } = all[0].at();
                 assert_eq!((got % parts, y % parts), (0, 0));
                 assert!((got - x).abs() * 2 <= parts && (y + x).abs() * 2 <= parts, "{x}: {got}");
             }
             let at = Snapped { x: ScreenVertex::BEYOND, y: 0 };
             let mut all = [ScreenVertex::placed(at, 0.5, 0.25)];
-            coarse(ways, &mut all);
+            coarse(step, &mut all);
             assert!(!all[0].is_inside());
         }
     }

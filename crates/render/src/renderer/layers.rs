@@ -68,7 +68,7 @@ impl Renderer {
             for draw in plan.draws.iter().filter(|draw| draw.normals == Normals::Face) {
                 draw.model.mesh.prepare(Derived::PolygonNormals);
             }
-            self.frame.build(self.level, &plan, (SamplePositions::default(), None), &watch);
+            self.frame.build(self.level, &plan, SamplePositions::default(), &watch);
             if !watch.is_given_up() {
                 let source = Source::new(&shot, &plan, (&self.frame, &names), &layers);
                 self.fill(&source, &mut layers, &watch);

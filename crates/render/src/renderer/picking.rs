@@ -62,7 +62,7 @@ impl Renderer {
         if let (false, Some(plan)) = (self.built, &self.plan) {
             let sample_positions = passes(plan.samples)[0];
             let watch = Cancellation::new(&|| true);
-            self.frame.build(self.level, plan, (sample_positions, None), &watch);
+            self.frame.build(self.level, plan, sample_positions, &watch);
             self.maps.update(self.level, plan, &watch);
             self.built = true;
         }
@@ -88,7 +88,7 @@ impl Renderer {
             }
         });
         let (draw, polygon) = self.seen(plan, word)?;
-        let depth = depth_format::depth(plan.variants.depth, entries::key(word));
+        let depth = depth_format::depth(plan.raster_mode().depth, entries::key(word));
         Some(Hit { item: plan.draws[draw as usize].item, polygon, depth })
     }
 
@@ -237,7 +237,7 @@ impl Renderer {
                 let item = seen.map(|(draw, _)| plan.draws[draw as usize].item);
                 last = (primitive, item.map_or(0, number_of));
             }
-            let depth = depth_format::depth(plan.variants.depth, entries::key(word));
+            let depth = depth_format::depth(plan.raster_mode().depth, entries::key(word));
             pixels[at] = (last.1, if last.1 == 0 { 0.0 } else { depth });
             ControlFlow::Continue(())
         });

@@ -113,7 +113,7 @@ impl ClippedWeights {
 
 /// Returns the pieces of a triangle on the screen.
 fn pieces(plan: &FramePlan, draw: &Draw, number: u32, shift: [i32; 2]) -> Vec<Piece> {
-    let grid = plan.variants.grid();
+    let grid = plan.raster_mode().grid;
     let shift = [shift[0] + plan.shift[0], shift[1] + plan.shift[1]];
     let screen = Screen::new(draw.clip_from_object, plan.viewport).on(grid);
     let screen = screen.seen_from(grid.offset(shift));

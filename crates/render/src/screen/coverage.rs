@@ -10,7 +10,7 @@
 //! Coordinates stay within 2^28 (the guard band of 2^20 pixels). Edge functions therefore stay
 //! below 2^59 and never overflow.
 
-pub use crate::frame::variants::Grid;
+pub use crate::frame::raster_mode::Grid;
 use serde::{Deserialize, Serialize};
 
 use marraztu_core::base::math::each;
@@ -292,16 +292,6 @@ pub fn doubled_area([p, q, r]: [Snapped; 3]) -> i64 {
 /// products fit.
 pub(crate) const NARROW_AREA: f32 = (1 << 30) as f32;
 pub(crate) const NARROW_SIDE: i32 = 1 << 20;
-
-/// Returns whether a triangle exceeds one of these limits.
-#[expect(clippy::cast_precision_loss, reason = "as it is found for sixteen triangles at a time")]
-pub(crate) fn is_wide([p, q, r]: [Snapped; 3]) -> bool {
-    // The same operations as for sixteen triangles at once, so that both agree.
-    let (ux, uy, vx, vy) = (q.x - p.x, q.y - p.y, r.x - p.x, r.y - p.y);
-    let rough = ux as f32 * vy as f32 - uy as f32 * vx as f32;
-    let is_long = [ux, uy, vx, vy].iter().any(|side| side.abs() > NARROW_SIDE);
-    rough.abs() > NARROW_AREA || is_long
-}
 
 #[cfg(test)]
 mod tests {

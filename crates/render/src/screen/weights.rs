@@ -59,7 +59,7 @@ impl Weights {
         if !own.iter().all(ScreenVertex::is_inside) {
             return Self::Cut(ClippedWeights::by(interpolation, plan, draw, number, shift));
         }
-        let grid = plan.variants.grid();
+        let grid = plan.raster_mode().grid;
         // Moving all corners one way equals moving the sample the other way.
         let corners = own.map(|vertex| vertex.at().seen_from(grid.offset(shift)));
         let w = match interpolation {

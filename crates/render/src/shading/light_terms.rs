@@ -7,7 +7,6 @@ use crate::frame::FramePlan;
 use crate::frame::draw::{Pipeline, Shaded};
 use crate::frame::variants::Decoding;
 use crate::lights::{LightTerm, PhongMaterial};
-use crate::raster::hit_colors::Conversion;
 use crate::screen::tiles::BLOCK_PIXELS;
 use crate::simd::power::Power;
 use crate::simd::{Encoding, Number};
@@ -85,15 +84,6 @@ impl<T: Number> LightTerms<T> {
     /// Returns the mipmaps of a texture, if the filter needs them.
     pub(crate) fn mips_of(&self, texture: &Shared<Texture>, decoding: Decoding) -> Option<&Mips> {
         self.mips.iter().find(|mips| mips.are_of(texture, decoding))
-    }
-
-    /// Returns the conversion of interpolated colours to bytes.
-    pub(crate) fn conversion(&self, plan: &FramePlan) -> Conversion<'_> {
-        Conversion {
-            interpolation: plan.variants.interpolation,
-            thresholds: self.thresholds(),
-            encoding: self.encoding(),
-        }
     }
 
     /// Returns the encoding, if colours are linear.

@@ -20,7 +20,6 @@ mod bumps;
 mod clamp_to_triangle;
 pub(crate) mod colors;
 pub(crate) mod context;
-pub(crate) mod corner_light;
 pub(crate) mod explain;
 pub(crate) mod face_colors;
 pub(crate) mod fragments;

@@ -6,8 +6,8 @@
 //! Tiles are painted into a buffer and copied. Stores to the picture miss the L1 cache and hold up
 //! later stores. Where shading stores numbers one by one and loads them sixteen at a time, store
 //! forwarding fails, and the load must wait for all earlier stores. A whole tile with little
-//! computation left is painted straight into the picture: if it was coloured during drawing or many
-//! of its blocks are filled, and no other thread works in its rows.
+//! computation left is painted straight into the picture: if many of its blocks are filled, and no
+//! other thread works in its rows.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -23,7 +23,6 @@ use crate::raster::tile::Visibility;
 use crate::screen::coverage::PixelBox;
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE, TILE_SIDE, tiles_of};
 use crate::simd::{BATCH, Bits};
-use marraztu_core::accuracy::LightAt;
 use marraztu_core::base::color::Color;
 use marraztu_core::base::image::Size;
 
@@ -157,7 +156,7 @@ impl<T: ShadingNumber> Painter<T> {
         let whole = (bounds.width(), bounds.height()) == (TILE, TILE);
         let (column, columns) = Self::columns(tile, size);
         let full = self.visibility.full_blocks().count_ones() as usize;
-        let is_done = plan.light_at == LightAt::Vertex || full >= BLOCK_PIXELS / 4;
+        let is_done = full >= BLOCK_PIXELS / 4;
         if whole
             && context.paths.quick
             && is_done
@@ -189,9 +188,7 @@ impl<T: ShadingNumber> Painter<T> {
             return false;
         }
         let Self { shader, visibility, layered: Layered { layers, .. }, .. } = self;
-        // Colours of hits are converted while they are drawn.
-        let conversion = Some(context.terms.conversion(plan));
-        visibility.draw(level, plan, frame, (tile, bounds), conversion);
+        visibility.draw(level, plan, frame, (tile, bounds));
         // Transparent triangles are kept apart: they hide nothing, and are sorted per pixel later.
         if frame.is_layered(tile) {
             layers.begin(level, plan, frame, (tile, bounds));
@@ -233,8 +230,8 @@ impl<T: ShadingNumber> Painter<T> {
             let is_filled = filled >> block & 1 != 0;
             let fill = (!(is_filled && straight)).then_some(context.plan.background);
             let mut shows = true;
-            // From the most special case to the most common one: layers, full blocks, colours from
-            // drawing, then blocks to be shaded.
+            // From the most special case to the most common one: layers, full blocks, then blocks
+            // to be shaded.
             if layered >> block & 1 != 0 {
                 // Layers reuse the fragment list, so waiting blocks are coloured before.
                 self.shader.finish_waiting(context, canvas);
@@ -246,15 +243,6 @@ impl<T: ShadingNumber> Painter<T> {
             } else if whole >> block & 1 != 0 {
                 // Already coloured by `fully_covered`.
                 continue;
-            } else if let Some((colors, are_known)) = self.visibility.colors(block) {
-                canvas.put(at, colors);
-                self.shader.path_pixels.early += BLOCK_PIXELS as u64;
-                // Some pixels show a primitive without a colour from drawing.
-                if !are_known {
-                    let (others, corner) =
-                        (self.visibility.uncolored(block), self.visibility.corner(block));
-                    self.shader.block_later(context, &others, corner, (canvas, at), None);
-                }
             } else if self.visibility.shows(block) {
                 let corner = self.visibility.corner(block);
                 shows = if context.frame.sample_positions().are_many() {

@@ -268,7 +268,7 @@ fn weigh<S: Simd>(
     triangles: &mut TinyTriangles,
     to: &mut Barycentrics<f32>,
 ) -> bool {
-    let (grid, interpolation) = (plan.variants.grid(), plan.variants.interpolation);
+    let (grid, interpolation) = (plan.raster_mode().grid, plan.variants.interpolation);
     let mut odd = 0;
     for at in (0..fragments.len).step_by(16) {
         let [[x0, y0, _, w0], [x1, y1, _, w1], [x2, y2, _, w2]] =

@@ -219,7 +219,7 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
         plan: &FramePlan,
         vertices: &[ScreenVertex],
     ) {
-        (self.grid, self.spacing) = (plan.variants.grid(), plan.spacing);
+        (self.grid, self.spacing) = (plan.raster_mode().grid, plan.spacing);
         T::prepare(level, self, vertices);
         // The screen vertices hold 1/w in f32, and perspective needs no z.
         if !T::EXACT && plan.eye == Eye::Point {

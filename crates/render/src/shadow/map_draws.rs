@@ -106,12 +106,8 @@ impl MapDraws {
             draw.mirrored = DMat3::from_mat4(draw.view_from_object).determinant() < 0.0;
         }
         // A picture is always finished: cancellation is checked between lights.
-        geometry.build(
-            level,
-            plan,
-            (SamplePositions::default(), None),
-            &Cancellation::new(&|| true),
-        );
+        let watch = Cancellation::new(&|| true);
+        geometry.build(level, plan, SamplePositions::default(), &watch);
         let (plan, geometry) = (&*plan, &*geometry);
         let [columns, rows] = tiles_of(plan.size);
         let count = usize::try_from(columns * rows).expect("not negative");
@@ -199,7 +195,7 @@ impl Tile<'_> {
         let at = i32::try_from(tile).expect("a map has few tiles");
         let (left, top) = (at % columns * TILE, at / columns * TILE);
         let bounds = PixelBox { left, top, right: left + TILE, bottom: top + TILE };
-        visibility.draw(level, plan, geometry, (tile, bounds), None);
+        visibility.draw(level, plan, geometry, (tile, bounds));
         let blocks = depths.chunks_mut(BLOCK_PIXELS).zip(slopes.chunks_mut(BLOCK_PIXELS));
         for (block, (depths, slopes)) in blocks.enumerate() {
             if !visibility.shows(block) {

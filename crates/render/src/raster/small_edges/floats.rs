@@ -37,7 +37,6 @@ impl<S: Simd> Edges<S> for FloatEdges<S> {
     type At = [f32x16<S>; 2];
     type Shift = [f32; 2];
     type Pixels = [i32x16<S>; 2];
-    const COLORED: bool = false;
 
     #[inline(always)]
     fn bounds(corners: Corners<S>, samples: [[i32; 2]; 2]) -> Boxes<S> {

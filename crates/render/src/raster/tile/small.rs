@@ -102,7 +102,7 @@ impl SmallTriangles {
                         return self.draw_pack::<S, D, E, N>(format, pack, into);
                     }
                     let some = mask32x16::from_bitmask(simd, (1 << count) - 1);
-                    if self.rest.add((pack, None), some, count) {
+                    if self.rest.add(pack, some, count) {
                         self.draw_rest::<S, D, E, N>(simd, format, into);
                     }
                 },

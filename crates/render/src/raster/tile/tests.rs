@@ -4,7 +4,6 @@ use super::*;
 use crate::raster::bins::LargeTriangle;
 use crate::raster::depth_format::Reversed;
 use crate::raster::edges_in_floats::FloatTriangle;
-use crate::raster::hit_colors::Brush;
 use crate::raster::large::Large;
 use crate::raster::queue::{ROWS, SMALL};
 use crate::raster::rule::{Fine, Rule, Unsnapped, Usual};
@@ -69,10 +68,9 @@ fn small_by<R: Rule>(
         for (row, values) in rows.iter().zip(&mut pack) {
             *values = i32x16::from_slice(simd, row);
         }
-        let brush = &mut Brush::default();
         match sample_positions.are_many() {
-            true => small::draw_pack::<_, R, MANY, false>((queue, 0), &pack, &mut bins, brush),
-            false => small::draw_pack::<_, R, 1, false>((queue, 0), &pack, &mut bins, brush),
+            true => small::draw_pack::<_, R, MANY>(queue, &pack, &mut bins),
+            false => small::draw_pack::<_, R, 1>(queue, &pack, &mut bins),
         }
     });
     bins
@@ -121,7 +119,7 @@ fn draw_bins(visibility: &mut Visibility, bins: &Bins, (tile, bounds): (usize, P
     visibility.clear(bounds, bins.sample_positions);
     dispatch!(Level::new(), simd => match bins.sample_positions.are_many() {
         true => {
-            visibility.draw_plain::<_, MANY>(simd, bins, (tile, None));
+            visibility.draw_plain::<_, MANY>(simd, bins, tile);
             visibility.draw_hits::<_, MANY>(simd, bins, tile);
             let bins = std::slice::from_ref(bins);
             match bins[0].sample_positions.count() {
@@ -130,7 +128,7 @@ fn draw_bins(visibility: &mut Visibility, bins: &Bins, (tile, bounds): (usize, P
             }
         }
         false => {
-            visibility.draw_plain::<_, 1>(simd, bins, (tile, None));
+            visibility.draw_plain::<_, 1>(simd, bins, tile);
             visibility.draw_hits::<_, 1>(simd, bins, tile);
         }
     });
@@ -139,8 +137,8 @@ fn draw_bins(visibility: &mut Visibility, bins: &Bins, (tile, bounds): (usize, P
 /// Draws a large triangle.
 fn draw_large(visibility: &mut Visibility, large: &LargeTriangle) {
     dispatch!(Level::new(), simd => match visibility.sample_positions.are_many() {
-        true => visibility.draw_large::<_, MANY>(simd, large, None),
-        false => visibility.draw_large::<_, 1>(simd, large, None),
+        true => visibility.draw_large::<_, MANY>(simd, large),
+        false => visibility.draw_large::<_, 1>(simd, large),
     });
 }
 

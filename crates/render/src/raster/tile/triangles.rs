@@ -1,6 +1,6 @@
 //! Draws the medium and large triangles of a tile that have no holes.
 
-use crate::simd::{Bits, dispatch};
+use crate::simd::Bits;
 use fearless_simd::{Level, Simd};
 
 use super::Visibility;
@@ -9,30 +9,27 @@ use crate::raster::depth_format::{Format as _, with_format};
 use crate::raster::entries::word;
 use crate::raster::large::{BlockTriangle, Large, Touched};
 use crate::raster::medium::{self, Medium};
-use crate::raster::paint::{Paint, Painted};
 use crate::screen::coverage::{Grid, PixelBox, Snapped, Triangle};
 use crate::screen::tiles::BLOCK_PIXELS;
 use marraztu_core::base::math::each;
 
 impl Visibility {
-    /// Draws a medium or large triangle without holes. With one sample per pixel and a paint, also
-    /// colours its pixels.
+    /// Draws a medium or large triangle without holes.
     #[inline(always)]
     pub(super) fn draw_large<S: Simd, const N: usize>(
         &mut self,
         simd: S,
         triangle: &LargeTriangle,
-        paint: Option<&Paint<'_>>,
     ) {
         let corners = each(triangle.corners, |corner| corner.at());
         let reached = PixelBox::reached(corners, self.sample_positions.reach::<N>());
         // The fine grid needs more than 32 bits.
         let is_medium = reached.width() <= medium::LONGEST && reached.height() <= medium::LONGEST;
         if is_medium && self.grid == Grid::Usual {
-            return self.draw_medium::<S, N>(simd, triangle, paint);
+            return self.draw_medium::<S, N>(simd, triangle);
         }
         let Some((large, area)) = self.set_up::<N>(triangle) else { return };
-        self.draw_blocks::<S, N>(simd, &BlockTriangle::Large(large), area, paint);
+        self.draw_blocks::<S, N>(simd, &BlockTriangle::Large(large), area);
     }
 
     /// Draws a triangle without holes block by block. `area` bounds its pixels, relative to the
@@ -43,7 +40,6 @@ impl Visibility {
         simd: S,
         triangle: &BlockTriangle,
         area: PixelBox,
-        paint: Option<&Paint<'_>>,
     ) {
         let touched = triangle.blocks::<S, N>(simd, area, &self.sample_positions);
         let (high, mut place) = (self.key(triangle.high()), None);
@@ -56,23 +52,14 @@ impl Visibility {
             if whole && self.note_full_block::<N>(triangle, block, &mut place) {
                 continue;
             }
-            if let (Some(paint), BlockTriangle::Large(large)) = (paint, triangle) {
-                self.paint_block(simd.level(), large, block, whole, paint);
-            } else {
-                self.write::<N>(simd.level(), block);
-                self.draw_block::<N>(simd.level(), triangle, block, whole);
-            }
+            self.write::<N>(simd.level(), block);
+            self.draw_block::<N>(simd.level(), triangle, block, whole);
         }
     }
 
     /// Draws a triangle with a bounding box of at most the size of a tile.
     #[inline(always)]
-    fn draw_medium<S: Simd, const N: usize>(
-        &mut self,
-        simd: S,
-        triangle: &LargeTriangle,
-        paint: Option<&Paint<'_>>,
-    ) {
+    fn draw_medium<S: Simd, const N: usize>(&mut self, simd: S, triangle: &LargeTriangle) {
         let corners = each(triangle.corners, |corner| corner.at());
         let Some(area) = self.reached::<N>(corners) else { return };
         let first = [self.bounds.left, self.bounds.top];
@@ -96,44 +83,15 @@ impl Visibility {
                     continue;
                 }
             }
-            let format = D::of(self.depth_format);
-            // Painting colours the pixels in front in the same pass.
-            if let Some(paint) = paint {
-                self.color(simd.level(), block);
-                let entries = &mut self.buffer.0.as_chunks_mut().0[block];
-                let painted = Painted { paint, colors: self.colors.block_mut(block) };
-                medium.draw(format, simd, block, area, Some(painted), entries);
-                continue;
-            }
             self.write::<N>(simd.level(), block);
-            let positions = self.sample_positions;
+            let (format, positions) = (D::of(self.depth_format), self.sample_positions);
             let entries = self.entries_mut::<N>(block);
             if N > 1 {
                 medium.draw_samples(format, simd, block, area, (&positions, entries));
             } else if let Some(plane) = entries.first_chunk_mut() {
-                medium.draw(format, simd, block, area, None, plane);
+                medium.draw(format, simd, block, area, plane);
             }
         });
-    }
-
-    /// Draws a triangle into a block that it covers fully or partly, and colours it, with one
-    /// sample per pixel.
-    #[inline(never)]
-    fn paint_block(
-        &mut self,
-        level: Level,
-        large: &Large,
-        block: usize,
-        whole: bool,
-        paint: &Paint<'_>,
-    ) {
-        self.color(level, block);
-        let entries = &mut self.buffer.0.as_chunks_mut().0[block];
-        let mut painted = Painted { paint, colors: self.colors.block_mut(block) };
-        let format = self.depth_format;
-        dispatch!(level, simd => with_format!(format, D => {
-            large.draw(D::of(format), simd, (block, [0; 2]), whole, &mut painted, entries);
-        }));
     }
 
     /// Draws a triangle into a block that it covers fully. `place` is its index in `large`, once it

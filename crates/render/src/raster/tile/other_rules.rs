@@ -1,4 +1,4 @@
-//! Draws the triangles of a tile by the variants of coverage.
+//! Draws the triangles of a tile by the rules of coverage that are not exact.
 
 use fearless_simd::{Level, Simd};
 
@@ -21,14 +21,14 @@ use marraztu_core::base::math::each;
 impl Visibility {
     /// Draws all triangles of a tile that are not small.
     #[inline(always)]
-    pub(super) fn draw_by_variant<S: Simd, const N: usize>(
+    pub(super) fn draw_by_rule<S: Simd, const N: usize>(
         &mut self,
         simd: S,
         (plan, frame): (&FramePlan, &ScreenGeometry),
         bins: &Bins,
         tile: usize,
     ) {
-        let mut surface = None;
+        let (mut surface, coverage) = (None, plan.raster_mode().coverage);
         for place in &bins.tiles[tile].large {
             let triangle = &bins.large[*place as usize];
             let number = triangle.number;
@@ -43,13 +43,13 @@ impl Visibility {
                 AlphaTest::of(own.filter(|_| sample < samples)?, (plan, frame), number, shift)
             });
             let tests = &tests[..samples];
-            if plan.variants.coverage == Coverage::Points {
+            if coverage == Coverage::Points {
                 self.draw_points::<N>(simd.level(), (plan, frame), number, tests);
                 continue;
             }
             let depths = each(triangle.corners, |corner| corner.depth);
             let corners = bins.unsnapped[*place as usize];
-            if plan.variants.coverage == Coverage::ScanLines {
+            if coverage == Coverage::ScanLines {
                 self.draw_scan_lines::<S, N>(simd, (corners, depths, number), tests);
                 continue;
             }
@@ -75,7 +75,7 @@ impl Visibility {
     ) {
         // Alpha-tested blocks are always written; others can be noted as fully covered.
         if tests[0].is_none() {
-            return self.draw_blocks::<S, N>(simd, triangle, area, None);
+            return self.draw_blocks::<S, N>(simd, triangle, area);
         }
         let touched = triangle.blocks::<S, N>(simd, area, &self.sample_positions);
         let high = self.key(triangle.high());
