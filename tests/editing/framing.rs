@@ -3,9 +3,9 @@
 use glam::DVec3;
 use marraztu_core::base::image::Size;
 use marraztu_core::edit::framing::{self, Side};
-use marraztu_core::edit::{GesturePhase, Refusal, items, placement};
+use marraztu_core::edit::{GesturePhase, Refusal, items, placement, shapes};
 use marraztu_core::scene::{
-    CameraMode, ItemId, ObjectId, Observer, Projection, Subject, Transformation, dvec3,
+    CameraMode, ItemId, ObjectId, Observer, Projection, Shape, Subject, Transformation, dvec3,
 };
 
 use super::desk::{Desk, close};
@@ -83,6 +83,22 @@ fn home_sees_all_that_is_shown() {
         desk.perform(items::toggle_shown(&desk.scene, ItemId::Object(ObjectId(id))));
     }
     assert_eq!(framing::all(&desk.scene, &desk.view), Err(Refusal::NothingToFrame));
+}
+
+#[test]
+fn home_frames_what_stands_on_a_ground_and_a_ground_alone() {
+    let mut desk = desk();
+    desk.perform(framing::all(&desk.scene, &desk.view));
+    let before = desk.pose().eye;
+    let add = shapes::insert(&desk.scene, &desk.view, Shape::Ground);
+    desk.perform(Ok(add));
+    desk.perform(framing::all(&desk.scene, &desk.view));
+    close(desk.pose().eye, before);
+    for id in [1, 2, 3] {
+        desk.perform(items::toggle_shown(&desk.scene, ItemId::Object(ObjectId(id))));
+    }
+    desk.perform(framing::all(&desk.scene, &desk.view));
+    assert!(desk.pose().eye.distance(before) > 100.0);
 }
 
 #[test]

@@ -91,3 +91,32 @@ fn esc_selects_one_of_several_before_it_warns() {
     assert!(editor.state().others().is_empty());
     assert_ne!(message(&editor), Some("Esc again quits"));
 }
+
+#[test]
+fn esc_closes_the_strip_before_it_quits() {
+    let mut editor = Editor::of_size(1280.0, 800.0);
+    editor.harness.state_mut().greet();
+    editor.settle();
+    assert!(editor.shows("Drop a model here"));
+    assert!(!editor.leaves_by(ESC));
+    assert!(!editor.shows("Drop a model here"));
+    assert_ne!(message(&editor), Some("Esc again quits"));
+}
+
+#[test]
+fn the_warning_ends_with_what_it_warns_of() {
+    let mut editor = Editor::new();
+    assert!(!editor.leaves_by(ESC));
+    // A switch says nothing of its own.
+    editor.press(Lower(Key::L));
+    assert_eq!(message(&editor), None);
+}
+
+#[test]
+fn ctrl_q_leaves_while_an_error_is_shown() {
+    let (_folder, path) = folder_with("bad.obj", "f 1 2 x\n");
+    let mut editor = Editor::of_size(1280.0, 800.0);
+    editor.drop_files(&[&path]);
+    editor.wait_until(|editor| editor.shows("The file was not loaded"));
+    assert!(editor.leaves_by(marraztu::app::actions::Chord::Command(Key::Q)));
+}

@@ -74,3 +74,24 @@ fn a_small_picture_keeps_its_place_for_itself() {
     editor.settle();
     assert!(!is_shown(&editor));
 }
+
+#[test]
+fn the_strip_is_there_again_after_a_lesson() {
+    let mut editor = greeted();
+    editor.click_label("Jagged edges");
+    assert!(editor.state().lab.away && !is_shown(&editor));
+    editor.click_label("Close");
+    assert!(!editor.state().lab.away && is_shown(&editor));
+}
+
+#[test]
+fn looking_at_a_model_of_the_strip_is_no_unsaved_work() {
+    let (_folder, path) = folder_with("cube.obj", CUBE);
+    let mut editor = greeted();
+    editor.click_label("Open model...");
+    editor.type_path(&path);
+    editor.wait_until(|editor| editor.scene().objects.len() == 1);
+    assert!(editor.state().history.is_saved() && editor.steps() == 1);
+    editor.perform(Action::Undo);
+    assert!(editor.scene().objects.len() > 1, "the first scene is back");
+}

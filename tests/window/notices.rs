@@ -13,8 +13,9 @@ use marraztu::app::actions::Chord::{Command, Named};
 use marraztu::app::actions::Request;
 use marraztu::app::state::Notice;
 use marraztu_core::accuracy::Shot;
-use marraztu_core::base::image::Size;
+use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{ItemId, UpAxis};
+use marraztu_io as io;
 use marraztu_render::{Renderer, plan_frame};
 
 use crate::dialogs::{CUBE, folder_with};
@@ -344,4 +345,32 @@ fn the_properties_switch_the_up_axis_too() {
     click(&mut editor, Role::RadioButton, "Up axis: Z");
     editor.wait_until(|editor| editor.up() == UpAxis::Z);
     assert_eq!(editor.top(), 5.0);
+}
+
+#[test]
+fn a_missing_texture_is_offered_until_one_is_chosen() {
+    let (folder, path) = folder_with("cube.obj", &format!("mtllib cube.mtl\nusemtl a\n{CUBE}"));
+    std::fs::write(folder.path().join("cube.mtl"), "newmtl a\nmap_Kd wood.png\n").unwrap();
+    let mut editor = Editor::of_size(1280.0, 800.0);
+    editor.open_alone(&path);
+    editor.harness.run_steps(600);
+    assert!(editor.shows("The texture of cube was not found"), "it waits for an answer");
+    let texture = folder.path().join("found.png");
+    io::save_picture(&texture, &Picture::filled(Size::new(2, 2), [200, 100, 50, 255])).unwrap();
+    editor.click_label("Find...");
+    editor.type_path(&texture);
+    editor.wait_until(|editor| !editor.shows("The texture of cube was not found"));
+    let scene = editor.scene();
+    assert!(scene.objects.iter().next().unwrap().1.texture.is_some());
+}
+
+#[test]
+fn past_notices_are_listed_by_an_action() {
+    let (_folder, path) = folder_with("odd.obj", &format!("{CUBE}f 1 2\n"));
+    let mut editor = Editor::of_size(1280.0, 800.0);
+    editor.open_alone(&path);
+    click(&mut editor, Role::Button, "Dismiss");
+    assert!(editor.state().notices.is_empty() && editor.shows("1 notice"));
+    editor.perform(Action::PastNotices);
+    assert!(editor.shows("Notices") && editor.shows("line"));
 }

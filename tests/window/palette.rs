@@ -399,3 +399,51 @@ fn a_lesson_chosen_in_the_palette_closes_it() {
     assert!(editor.state().lab.lesson.is_some());
     assert!(!editor.state().palette, "the scene was replaced before the palette was closed");
 }
+
+#[test]
+fn keys_that_arrive_in_one_slow_frame_reach_what_they_were_meant_for() {
+    let command = egui::Modifiers { ctrl: true, command: true, ..egui::Modifiers::NONE };
+    let type_at_once = |editor: &Editor, text: &str| {
+        for letter in text.chars() {
+            let key = Key::from_name(&letter.to_uppercase().to_string()).unwrap();
+            editor.key(key, true, egui::Modifiers::NONE);
+            editor.harness.event(egui::Event::Text(letter.to_string()));
+            editor.key(key, false, egui::Modifiers::NONE);
+        }
+    };
+    let mut editor = Editor::new();
+    let before = editor.view();
+    editor.key(Key::K, true, command);
+    editor.key(Key::K, false, command);
+    type_at_once(&editor, "dim");
+    editor.settle();
+    editor.settle();
+    let field = control(&editor, Role::TextInput, "Search everything");
+    assert_eq!(field.value().unwrap_or_default(), "dim");
+    assert!(editor.view() == before, "no letter acts on the scene");
+    // Another name, with the first letter right after F2.
+    let mut editor = Editor::new();
+    editor.perform(Action::SubjectObject);
+    editor.key(Key::F2, true, egui::Modifiers::NONE);
+    editor.key(Key::F2, false, egui::Modifiers::NONE);
+    type_at_once(&editor, "bold");
+    editor.key(Key::Enter, true, egui::Modifiers::NONE);
+    editor.key(Key::Enter, false, egui::Modifiers::NONE);
+    editor.settle();
+    editor.settle();
+    assert_eq!(editor.state().selected_name(), "bold");
+}
+
+#[test]
+fn words_of_a_lesson_find_the_choices_of_its_axis_and_what_can_act_comes_first() {
+    let mut editor = Editor::new();
+    editor.press(Command(Key::K));
+    type_text(&mut editor, "z-fighting");
+    assert!(listed(&editor).iter().any(|label| label.starts_with("Depth")));
+    editor.press(Named(Key::Escape));
+    editor.press(Command(Key::K));
+    type_text(&mut editor, "model");
+    let found = listed(&editor);
+    let place = |label: &str| found.iter().position(|other| other.starts_with(label)).unwrap();
+    assert!(place("Load model") < place("Find missing files"), "{found:?}");
+}

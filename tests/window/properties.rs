@@ -602,3 +602,31 @@ fn rotations_go_on_over_a_quarter_turn_and_open_with_the_plainest_angles() {
     editor.settle();
     assert_eq!(angles(&editor), ["X 0", "Y -140", "Z 0"]);
 }
+
+#[test]
+fn numbers_typed_with_tab_in_one_slow_frame_go_to_their_fields() {
+    let mut editor = Editor::tall();
+    editor.perform(Action::SubjectObject);
+    click(&mut editor, Role::SpinButton, "Position X");
+    let key = |editor: &Editor, key: Key| {
+        editor.key(key, true, egui::Modifiers::NONE);
+        editor.key(key, false, egui::Modifiers::NONE);
+    };
+    let digits = |editor: &Editor, digits: &str| {
+        for digit in digits.chars() {
+            editor.harness.event(egui::Event::Text(digit.to_string()));
+        }
+    };
+    digits(&editor, "11");
+    key(&editor, Key::Tab);
+    digits(&editor, "12");
+    key(&editor, Key::Tab);
+    digits(&editor, "13");
+    key(&editor, Key::Enter);
+    editor.harness.run_steps(10);
+    editor.settle();
+    let id = editor.view().object.unwrap();
+    let scene = editor.scene();
+    let placement = scene.objects.get(id).unwrap().placement.now().w_axis.truncate();
+    assert_eq!(placement, DVec3::new(11.0, 12.0, 13.0));
+}

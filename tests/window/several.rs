@@ -424,3 +424,22 @@ fn the_selected_object_is_framed_even_if_another_was_selected_before() {
     editor.perform(Action::FrameSelection);
     assert!(pose(&editor).eye.distance(framed.eye) < 1e-9, "{:?}", pose(&editor));
 }
+
+#[test]
+fn a_box_inside_of_a_face_selects_its_object_and_a_ground_only_if_alone() {
+    let mut editor = Editor::new();
+    editor.perform_all(&[Action::New, Action::AddCube, Action::AddGround]);
+    let id = |editor: &Editor, name: &str| {
+        let scene = editor.scene();
+        scene.objects.iter().find(|(_, object)| object.name == name).unwrap().0
+    };
+    let cube = id(&editor, "cube");
+    editor.ask(Request::Select(ItemId::Object(id(&editor, "ground"))));
+    assert_ne!(editor.view().object, Some(cube));
+    // The cube rests at the height of the eye, and a fifth of the view is its height.
+    let at = editor.at(0.5, 0.4);
+    editor.set_modifiers(Modifiers { ctrl: true, command: true, ..Modifiers::NONE });
+    editor.drag(LEFT, &[at - vec2(4.0, 4.0), at, at + vec2(4.0, 4.0)]);
+    editor.set_modifiers(Modifiers::NONE);
+    assert!(names(&editor).contains(&"cube".to_owned()), "{:?}", names(&editor));
+}

@@ -1,24 +1,25 @@
 //! Attributes the error of one pixel to the axes of accuracy.
 //!
-//! The picture is drawn again with one axis at a time at its most exact choice. The reduction of
+//! The reference is the ideal, as wherever errors of a picture are shown. The
+//! picture is drawn again with one axis at a time at its most exact choice. The reduction of
 //! the error is the share of that axis. Shares need not add up to the error, since errors may
 //! cancel or depend on each other.
 
 use serde::Serialize;
 
 use super::picture_source::PictureSource;
-use marraztu_core::accuracy::{AXES, Axis, AxisKind, Settings};
+use marraztu_core::accuracy::{AXES, Axis, AxisKind, Samples, Settings};
 
 /// One pixel, with the sources of its error.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Attribution {
     /// Column and row, from the upper left.
     pub at: [usize; 2],
-    /// The reference's red, green and blue.
+    /// The ideal's red, green and blue.
     pub exact: [u8; 3],
     /// Red, green and blue of the judged settings.
     pub ours: [u8; 3],
-    /// Whether the reference shows a different primitive.
+    /// Whether exact coverage shows a different primitive at the centre of the pixel.
     pub coverage_differs: bool,
     /// The axes that are not at their most exact choice, the largest share first.
     pub shares: Vec<Share>,
@@ -45,34 +46,44 @@ pub fn attribute(
     settings: &Settings,
     at: [usize; 2],
 ) -> Option<Attribution> {
-    let mut look = |settings: &Settings| -> Option<([u8; 3], u32)> {
-        source.draw(settings);
-        let size = source.picture().size();
-        if at[0] >= size.width || at[1] >= size.height {
-            return None;
-        }
-        let [r, g, b, _] = source.picture().pixel(at[0], at[1]);
-        Some(([r, g, b], source.primitives()[at[1] * size.width + at[0]]))
-    };
-    // A pixel with several samples is judged against the same number, each lit.
-    let (exact, exact_primitive) = look(&settings.reference())?;
-    let (ours, primitive) = look(settings)?;
+    let (ours, _) = look(source, settings, at)?;
+    // The centre of the pixel, in both pictures.
+    let once = Settings { samples: Samples::One, ..*settings };
+    let (_, primitive) = look(source, &once, at)?;
+    let (_, exact_primitive) = look(source, &once.reference(), at)?;
+    let coverage_differs = primitive != exact_primitive;
+    let ideal = settings.ideal();
+    let exact = source.ideal_pixel(&ideal, at);
     // Make one axis exact at a time, starting from the judged settings.
     let mut shares = Vec::new();
-    let judged = |axis: &&Axis| axis.kind == AxisKind::Scored && axis.key != "samples";
-    for axis in AXES.iter().filter(judged) {
+    for axis in AXES.iter().filter(|axis| axis.kind == AxisKind::Scored) {
         let (chosen, best) = (axis.chosen(settings), axis.most_exact(settings));
         if chosen.word == best.word {
             continue;
         }
-        let (value, _) = look(&best.of(settings))?;
+        let alone = best.of(settings);
+        let value = if alone == ideal { exact } else { look(source, &alone, at)?.0 };
         let steps = distance(ours, exact) - distance(value, exact);
         let (chosen, exact) = (chosen.word, best.word);
         shares.push(Share { axis: axis.key, chosen, exact, value, steps });
     }
     shares.sort_by_key(|share| std::cmp::Reverse(share.steps));
-    let coverage_differs = primitive != exact_primitive;
     Some(Attribution { at, exact, ours, coverage_differs, shares })
+}
+
+/// Draws a picture, and returns a pixel with its primitive; `None` if it is outside.
+fn look(
+    source: &mut dyn PictureSource,
+    settings: &Settings,
+    [x, y]: [usize; 2],
+) -> Option<([u8; 3], u32)> {
+    source.draw(settings);
+    let size = source.picture().size();
+    if x >= size.width || y >= size.height {
+        return None;
+    }
+    let [r, g, b, _] = source.picture().pixel(x, y);
+    Some(([r, g, b], source.primitives()[y * size.width + x]))
 }
 
 /// Returns the difference of two colours in byte steps, summed over the channels.
@@ -92,20 +103,31 @@ impl Attribution {
         let color = |[r, g, b]: [u8; 3]| format!("({r}, {g}, {b})");
         let mut lines = vec![
             format!("pixel {x},{y}"),
-            format!("  exact  {}", color(self.exact)),
+            format!("  ideal  {}", color(self.exact)),
             format!("  ours   {}: {} byte steps off", color(self.ours), self.steps()),
         ];
         if self.coverage_differs {
-            lines.push("  the exact picture shows another triangle there".to_owned());
+            lines.push("  exact coverage shows another triangle at its centre".to_owned());
         }
         // Shares may be negative: errors can cancel.
-        for Share { axis, chosen, exact, value, steps } in &self.shares {
+        for Share { axis, exact, value, steps, .. } in self.shares.iter().filter(|it| it.steps != 0)
+        {
             let how = match steps {
-                0 => "no nearer".to_owned(),
                 1.. => format!("{steps} steps nearer"),
                 _ => format!("{} steps farther", -steps),
             };
-            lines.push(format!("  {axis} {exact} instead of {chosen}: {}, {how}", color(*value)));
+            let name = Axis::named(axis).and_then(|axis| {
+                let choice = axis.choices.iter().find(|choice| choice.word == *exact)?;
+                Some(axis.in_words(choice))
+            });
+            let name = name.unwrap_or_else(|| format!("{axis} {exact}"));
+            lines.push(format!("  {name}: {}, {how}", color(*value)));
+        }
+        let others = self.shares.iter().filter(|share| share.steps == 0).count();
+        if others > 0 && others < self.shares.len() {
+            lines.push(format!("  {others} other choices change nothing here"));
+        } else if others > 0 {
+            lines.push("  no choice alone brings it nearer".to_owned());
         }
         if self.shares.is_empty() {
             lines.push("  every axis is at its most exact".to_owned());

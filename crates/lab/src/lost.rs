@@ -4,7 +4,8 @@
 //! times of whole pictures. Pixels are compared by blocks of 8 x 8: an edge that is a pixel off, or
 //! a hole here and there, loses nothing. An object is lost in a block if the picture shows it in
 //! less than a quarter of the pixels that the reference does. A pixel that shows another object as
-//! near is not lost: coarse depths mix up surfaces, but draw all of them.
+//! near is not lost: coarse depths mix up surfaces, but draw all of them. Nor is an object lost
+//! that is as large as in the reference, but elsewhere: coarse positions move it.
 
 use std::collections::BTreeMap;
 
@@ -17,6 +18,9 @@ const SIDE: usize = 8;
 
 /// Objects in fewer pixels of a block are ignored: sampling decides whether they are seen.
 const LEAST: u32 = 8;
+
+/// An object with this part of its pixels in the picture is not lost.
+const WHOLE: f64 = 0.95;
 
 /// The largest relative and absolute differences of equal depths; depths in 16 bits have steps of
 /// 1.5e-5.
@@ -31,18 +35,26 @@ pub(crate) fn flat_surface(primitives: &[u32]) -> Vec<PixelSurface> {
 /// rows of `width`.
 pub(crate) fn lost(shown: &[PixelSurface], reference: &[PixelSurface], width: usize) -> f64 {
     let height = reference.len() / width.max(1);
-    let (mut all, mut lost) = (0_u64, 0_u64);
+    // For each object, its pixels in the reference, in the picture, and in blocks that lack it.
+    let mut objects: BTreeMap<u32, [u64; 3]> = BTreeMap::new();
     for top in (0..height).step_by(SIDE) {
         for left in (0..width).step_by(SIDE) {
             let rows = (top..height.min(top + SIDE)).map(|y| y * width);
             let pixels = rows.flat_map(|row| row + left..row + width.min(left + SIDE));
-            let counts = counts(shown, reference, pixels);
-            for [expected, seen] in counts.into_values().filter(|of| of[0] >= LEAST) {
-                all += u64::from(expected);
-                lost += if 4 * seen < expected { u64::from(expected) } else { 0 };
+            for (object, [expected, seen]) in counts(shown, reference, pixels) {
+                let [all, drawn, lost] = objects.entry(object).or_default();
+                *drawn += u64::from(seen);
+                if expected >= LEAST {
+                    *all += u64::from(expected);
+                    *lost += if 4 * seen < expected { u64::from(expected) } else { 0 };
+                }
             }
         }
     }
+    let all: u64 = objects.values().map(|[all, ..]| all).sum();
+    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^52 pixels")]
+    let is_whole = |[all, drawn, _]: &[u64; 3]| *drawn as f64 >= WHOLE * *all as f64;
+    let lost: u64 = objects.values().filter(|of| !is_whole(of)).map(|[.., lost]| lost).sum();
     #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^52 pixels")]
     let part = if all == 0 { 0.0 } else { lost as f64 / all as f64 };
     part
@@ -119,6 +131,17 @@ mod tests {
         for shown in [&whole, &shifted, &holes] {
             assert_eq!(lost(shown, &whole, WIDTH), 0.0);
         }
+    }
+
+    #[test]
+    fn a_surface_that_is_whole_but_elsewhere_is_not_lost() {
+        let column = |from: usize| -> Vec<PixelSurface> {
+            let inside = |i: usize| (from..from + 8).contains(&(i % WIDTH));
+            (0..16 * WIDTH).map(|i| if inside(i) { (1, 0.1) } else { (0, 0.0) }).collect()
+        };
+        assert_eq!(lost(&column(16), &column(8), WIDTH), 0.0);
+        // Half of it has left the picture.
+        assert_eq!(lost(&column(28), &column(8), WIDTH), 1.0);
     }
 
     #[test]

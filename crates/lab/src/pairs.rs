@@ -235,6 +235,10 @@ pub fn measure(
     let mut draw = |which: usize| {
         let settings = [a, b][which];
         let time = clock.time(Work::Picture(settings), &mut || source.draw(settings));
+        // A cancelled picture is incomplete, and says nothing.
+        if watch.progress.is_cancelled() {
+            return Err(Unmeasured::Cancelled);
+        }
         // Hashing is outside the timed part.
         let hash = hash(source.picture());
         match expected[which].replace(hash) {

@@ -9,6 +9,7 @@ use marraztu_core::base::image::Picture;
 use marraztu_io::Progress;
 use marraztu_render::Renderer;
 use marraztu_render::plan_frame;
+use marraztu_render::screen::coverage::PixelBox;
 
 /// The reference that pictures are judged against.
 #[derive(Clone, Copy, Debug, Default)]
@@ -63,6 +64,12 @@ pub trait PictureSource {
     /// Draws the whole picture, and reports its progress.
     fn draw_slowly(&mut self, settings: &Settings, _: &Progress) {
         self.draw(settings);
+    }
+    /// Returns the colour of a pixel of the picture with these settings, which are an ideal.
+    fn ideal_pixel(&mut self, ideal: &Settings, [x, y]: [usize; 2]) -> [u8; 3] {
+        self.draw(ideal);
+        let [r, g, b, _] = self.picture().pixel(x, y);
+        [r, g, b]
     }
     /// Returns the last picture.
     fn picture(&self) -> &Picture;
@@ -135,6 +142,18 @@ impl PictureSource for Studio {
         // A cancelled picture is not used.
         let tell = |done, all| _ = progress.reached(done, all);
         let _ = self.renderer.render_watched(&plan, &|| !self.progress.is_cancelled(), &tell);
+    }
+
+    fn ideal_pixel(&mut self, ideal: &Settings, at: [usize; 2]) -> [u8; 3] {
+        // A whole ideal picture may take minutes.
+        let plan = plan_frame(&self.shot.with(*ideal));
+        let [left, top] = at.map(|i| i32::try_from(i).expect("pictures have 32-bit sizes"));
+        let pixel = PixelBox { left, top, right: left + 1, bottom: top + 1 };
+        let wanted = || !self.progress.is_cancelled();
+        let picture = self.renderer.render_window(&plan, pixel, &wanted);
+        // A cancelled picture is not used.
+        let [r, g, b, _] = picture.map_or([0; 4], |picture| picture.pixel(0, 0));
+        [r, g, b]
     }
 
     fn picture(&self) -> &Picture {

@@ -17,9 +17,13 @@ pub struct Row {
     pub value: [f64; 3],
 }
 
-/// Returns rows that add up to the colour of the pixel: the terms, and the rounding error.
-pub fn rows(scene: &Scene, explained: &PixelColor) -> Vec<Row> {
-    let steps = |value: [f64; 3]| value.map(|x| x * 255.0);
+/// Returns rows that add up to the colour of the pixel, as written with this number of decimals:
+/// the terms, and the rounding error if it shows.
+pub fn rows(scene: &Scene, explained: &PixelColor, decimals: i32) -> Vec<Row> {
+    let unit = 10.0_f64.powi(decimals);
+    // Adding 0 removes negative zeros.
+    let written = |x: f64| (x * unit).round() / unit + 0.0;
+    let steps = |value: [f64; 3]| value.map(|x| written(x * 255.0));
     let label = |term: &Term| {
         let part = match term.light {
             Some(id) => format!("{}, {}", light_name(scene, id), term.part.name()),
@@ -29,8 +33,13 @@ pub fn rows(scene: &Scene, explained: &PixelColor) -> Vec<Row> {
     };
     let row = |term: &Term| Row { label: label(term), value: steps(term.value) };
     let mut rows: Vec<Row> = explained.terms.iter().map(row).collect();
-    if explained.rounding != [0.0; 3] {
-        rows.push(Row { label: "rounding".to_owned(), value: steps(explained.rounding) });
+    let sum = steps(explained.color);
+    let rest = [0, 1, 2].map(|i| {
+        let terms: f64 = rows.iter().map(|row| row.value[i]).sum();
+        written(sum[i] - terms)
+    });
+    if rest != [0.0; 3] {
+        rows.push(Row { label: "rounding".to_owned(), value: rest });
     }
     rows
 }
@@ -117,7 +126,7 @@ pub fn lines(scene: &Scene, explained: &PixelColor) -> Vec<String> {
         let [r, g, b] = value.map(|x| format!("{x:.4}"));
         format!("  {label:<34}{r:>10}{g:>10}{b:>10}")
     };
-    lines.extend(rows(scene, explained).iter().map(|row| line(&row.label, row.value)));
+    lines.extend(rows(scene, explained, 4).iter().map(|row| line(&row.label, row.value)));
     lines.push(line("sum", explained.color.map(|x| x * 255.0)));
     if explained.linear {
         lines.push("  linear light: encoded in sRGB before it is rounded".to_owned());

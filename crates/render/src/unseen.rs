@@ -49,7 +49,7 @@ impl fmt::Display for Unseen {
         match self {
             Self::LeftOut(reason) => f.write_str(reason),
             Self::TurnedAway { faces: 1 } => f.write_str("its only face is turned away"),
-            Self::TurnedAway { faces } => write!(f, "all {faces} faces are turned away"),
+            Self::TurnedAway { .. } => f.write_str("all of its faces are turned away"),
             Self::Covered { .. } => f.write_str("it is behind other objects"),
             Self::Transparent => f.write_str("it is wholly transparent"),
             Self::BetweenPixels => f.write_str("it is smaller than a pixel, or seen edge-on"),

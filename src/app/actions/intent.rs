@@ -52,6 +52,8 @@ pub(crate) enum Intent {
     FitExposure,
     /// Take an axis and a number from the keyboard.
     TypeAmount,
+    /// List the notices so far.
+    PastNotices,
     /// Use the clipboard.
     Clipboard(ClipboardIntent),
     /// Move the keyboard focus to the panels or back to the viewport.

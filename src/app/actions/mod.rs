@@ -17,5 +17,5 @@ pub(crate) use intent::{ClipboardIntent, FileIntent, Intent};
 pub use mouse::MouseInfo;
 pub use request::{Also, KeyRequest, LabRequest, MissingRequest, Request};
 pub(crate) use request::{Requests, change, change_view};
-pub(crate) use resolve::{ADD_LIGHTS, resolve};
+pub(crate) use resolve::{ADD_LIGHTS, ADD_OBJECTS, resolve};
 pub use table::Action;

@@ -41,7 +41,8 @@ impl MouseInfo {
             => "mouse turn rotate around view left";
         ["Shift+drag", "Middle drag"] "Pan" "Moves the camera sideways."
             => "mouse shift move view left";
-        ["Wheel", "Pinch"] "Zoom" "Zooms towards the pointer, or away from it."
+        ["Wheel", "Pinch"] "Zoom"
+            "Zooms towards the pointer; in analysis, towards the selected object."
             => "mouse scroll near closer far dolly";
         ["Right click"] "Menu" "Opens the menu of the item under the pointer."
             => "mouse context";

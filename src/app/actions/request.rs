@@ -88,8 +88,6 @@ pub enum Request {
     CancelLoading(usize),
     /// Cancels making the file at this index.
     CancelMaking(usize),
-    /// Dismisses the notices of this kind.
-    PutAway(NoticeKind),
     /// Moves the notices of this kind to the status line.
     Settle(NoticeKind),
     /// Dismisses all notices.

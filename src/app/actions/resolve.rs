@@ -31,6 +31,17 @@ type Resolved = Result<Intent, Refusal>;
 /// The actions that add a light with a separate position or direction, in the order of menus.
 pub(crate) const ADD_LIGHTS: [Action; 3] = [Action::AddSun, Action::AddBulb, Action::AddSpot];
 
+/// The actions that add an object, in the order of menus.
+pub(crate) const ADD_OBJECTS: [Action; 7] = [
+    Action::Load,
+    Action::AddCube,
+    Action::AddSphere,
+    Action::AddCylinder,
+    Action::AddTorus,
+    Action::AddPlane,
+    Action::AddGround,
+];
+
 /// Returns the effect of `action` in this phase of a gesture.
 ///
 /// # Errors
@@ -266,6 +277,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::ToPanels => Ok(Intent::ChangeKeyboardOwner(Way::On)),
         Action::ToPanelsBack => Ok(Intent::ChangeKeyboardOwner(Way::Back)),
         Action::Palette => show(|state| state.palette ^= true),
+        Action::PastNotices => Ok(Intent::PastNotices),
         Action::LargerText => zoom(state, 0.1),
         Action::SmallerText => zoom(state, -0.1),
         Action::NormalText => Ok(Intent::Zoom(1.0)),

@@ -137,6 +137,7 @@ impl Action {
             Self::ApertureUp | Self::ApertureDown | Self::RedUp | Self::RedDown => return None,
             Self::GreenUp | Self::GreenDown | Self::BlueUp | Self::BlueDown => return None,
             Self::LargerText | Self::SmallerText | Self::NormalText => return None,
+            Self::PastNotices => return None,
             Self::AimAtSelection | Self::WhyUnseen | Self::ChooseTexture => return None,
             Self::ToPanels | Self::Light0 | Self::Light1 | Self::Light2 | Self::Light3 => {
                 return None;

@@ -296,7 +296,7 @@ actions! {
     ToggleRefine Show ONCE []
         "Refine when still"
         "Increases the samples per pixel while nothing moves."
-        "antialiasing smooth edges samples progressive quality sharp";
+        "smooth edges progressive quality sharp";
     DialDraft Show ONCE [Named(Key::F7)]
         "Draft accuracy" "Draws a quarter of the pixels, for speed."
         "preset quality fast preview low dial";
@@ -318,7 +318,7 @@ actions! {
     ToggleLightNormals Show ONCE [Either(Key::I)]
         "Flat shading (face normals)"
         "Lights polygons with face normals instead of vertex normals."
-        "smooth shading faceted hard soft gouraud";
+        "smooth shading faceted hard soft";
 
     ToggleProjection Camera ONCE [Either(Key::P)]
         "Orthographic" "Switches between orthographic and perspective projection."
@@ -457,6 +457,9 @@ actions! {
     MeasurePlan Window ONCE [Named(Key::F4)]
         "Measure effects" "Measures the time of a picture with and without each effect."
         "benchmark time profile speed";
+    PastNotices Window ONCE []
+        "Past notices..." "Lists the notices so far, with their findings."
+        "findings messages warnings log";
     LargerText Window ONCE [Command(Key::Plus), Command(Key::Equals)]
         "Larger interface" "Makes text and panels larger."
         "zoom in scale font size big ui";

@@ -337,6 +337,12 @@ impl Browser {
         }
     }
 
+    /// Returns whether a path has the extension of the proposed name.
+    fn has_ending_of_proposal(&self, path: &Path) -> bool {
+        let proposed = Path::new(&self.proposal).extension();
+        proposed.is_some() && path.extension() == proposed
+    }
+
     /// Returns the label of the button that confirms the choice.
     fn verb(&self) -> &'static str {
         match self.mode {
@@ -346,9 +352,17 @@ impl Browser {
         }
     }
 
-    /// Returns the file in the path field, with an extension.
+    /// Returns the file in the path field, with an extension. If a name with an extension was typed
+    /// in place of the proposed one, the proposed extension behind it does not count.
     fn named(&self) -> PathBuf {
         let path = self.typed();
+        let typed = path.file_stem().map(Path::new).and_then(Path::extension);
+        let is_known = typed.is_some_and(|typed| {
+            self.endings.iter().any(|ending| typed.eq_ignore_ascii_case(ending))
+        });
+        if self.mode == Mode::Save && is_known && self.has_ending_of_proposal(&path) {
+            return path.with_extension("");
+        }
         match self.endings.first() {
             Some(ending) if self.mode == Mode::Save && path.extension().is_none() => {
                 path.with_extension(ending)

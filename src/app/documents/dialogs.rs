@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::Sender;
 use std::time::{Duration, Instant};
 
-use egui::{Context, Id, Modal, Ui};
+use egui::{Context, Id, Modal, ScrollArea, Ui};
 #[cfg(feature = "desktop")]
 use winit::raw_window_handle::{HasDisplayHandle, HasWindowHandle};
 
@@ -24,6 +24,12 @@ use crate::app::widgets::controls::heading;
 
 /// A system dialog that ends within this time was never shown.
 const AT_ONCE: Duration = Duration::from_millis(400);
+
+/// The space between a dialog and the edges of a low window, with the dialog's frame.
+const MARGIN: f32 = 24.0;
+
+/// In less room, a dialog may be too high.
+const LOW: f32 = 420.0;
 
 /// The window as the parent of system dialogs.
 #[cfg(feature = "desktop")]
@@ -212,7 +218,12 @@ impl Dialogs {
         let frame = egui::Frame::popup(&ctx.global_style()).inner_margin(16.0);
         let kind = std::mem::discriminant(dialog);
         let modal = Modal::new(Id::unique(("dialog", number, kind))).frame(frame);
-        let response = modal.show(ctx, |ui| dialog.ui(ui));
+        // In a low window, a dialog scrolls.
+        let room = ctx.content_rect().height() - 2.0 * MARGIN;
+        let response = modal.show(ctx, |ui| match room < LOW {
+            true => ScrollArea::vertical().max_height(room).show(ui, |ui| dialog.ui(ui)).inner,
+            false => dialog.ui(ui),
+        });
         let ended = match response.inner {
             Some(end) => end,
             None if response.should_close() => End::Cancelled,
@@ -357,7 +368,7 @@ impl Dialog {
             Self::Details(title, lines) => {
                 limit_width(ui, 560.0);
                 heading(ui, title.as_str());
-                egui::ScrollArea::vertical().max_height(300.0).show(ui, |ui| {
+                ScrollArea::vertical().max_height(300.0).show(ui, |ui| {
                     for line in lines {
                         ui.label(line.as_str());
                     }

@@ -72,7 +72,7 @@ pub(crate) struct Arrived {
     pub(crate) object: Object,
     /// The text of its notice.
     pub(crate) said: String,
-    pub(crate) findings: Vec<String>,
+    pub(crate) findings: Vec<Finding>,
 }
 
 /// A model read with another axis up, for these objects.

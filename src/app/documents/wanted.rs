@@ -87,7 +87,7 @@ impl Wanted {
 
     /// Returns the title of its dialog, its mode, and the extensions.
     pub(super) fn description(&self) -> (&'static str, Mode, Vec<&'static str>) {
-        let models = || vec!["obj", "gz"];
+        let models = || vec!["obj", "stl", "gz"];
         let scenes = || vec!["marraztu"];
         let pictures = || io::PICTURE_FORMATS.iter().map(|format| format.endings[0]).collect();
         match self {

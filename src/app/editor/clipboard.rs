@@ -59,7 +59,10 @@ impl App {
             MaterialChoice::File => MaterialChoice::Own(object.part_look(0).material),
             other => other.clone(),
         };
-        let told = format!("Copied the material of {}", object.name);
+        let mut told = format!("Copied the material of {}", object.name);
+        if object.part_look(0).texture.is_some() {
+            told += ", without its texture";
+        }
         match io::material_to_text(&material) {
             Ok(text) => {
                 ctx.copy_text(text);
@@ -117,7 +120,7 @@ impl App {
         let command = several::change_objects(scene, &view, &others, set)?;
         let label = format!("Paste a material to {}", self.state.acted_on_name());
         self.change(command, Gesture::Whole, &label);
-        self.state.tell(Some(label));
+        self.state.tell(Some(label.replacen("Paste", "Pasted", 1)));
         Ok(())
     }
 }

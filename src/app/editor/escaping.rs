@@ -21,7 +21,7 @@ impl App {
     pub(super) fn escape(&mut self, ctx: &Context) {
         let now = ctx.input(|input| input.time);
         if self.dismisses(ctx) || self.cancels(ctx) || self.deselects() {
-            self.quits_until = None;
+            self.forget_quitting();
         } else if cfg!(target_family = "wasm") {
             self.state.tell(Some("There is nothing to cancel".to_owned()));
         } else if self.quits_until.take().is_some_and(|until| now <= until) {
@@ -29,14 +29,22 @@ impl App {
         } else {
             self.quits_until = Some(now + TWICE);
             self.state.tell(Some(AGAIN.to_owned()));
-            ctx.request_repaint_after(std::time::Duration::from_secs_f64(TWICE));
+            // A frame at exactly that time might still count as within it.
+            ctx.request_repaint_after(std::time::Duration::from_secs_f64(TWICE + 0.05));
         }
     }
 
     /// Removes the message about a second Esc once that no longer quits.
     pub(super) fn end_quitting(&mut self, ctx: &Context) {
         let now = ctx.input(|input| input.time);
-        if self.quits_until.take_if(|until| *until < now).is_some() {
+        if self.quits_until.is_some_and(|until| until < now) {
+            self.forget_quitting();
+        }
+    }
+
+    /// Lets the next Esc be a first one.
+    pub(super) fn forget_quitting(&mut self) {
+        if self.quits_until.take().is_some() {
             self.state.message.take_if(|message| message.text == AGAIN);
         }
     }
@@ -64,7 +72,10 @@ impl App {
             return true;
         }
         // Files keep the history open, so it closes after the modes.
-        if self.dismiss_notices() || self.closes(Panel::History) {
+        if std::mem::take(&mut self.state.greeting)
+            || self.dismiss_notices()
+            || self.closes(Panel::History)
+        {
             return true;
         }
         let is_away = self.state.lab.away;

@@ -279,7 +279,7 @@ impl App {
             self.note_recent(&path);
         }
         let material = settled(material, &loaded);
-        let details = details(&loaded.findings);
+        let (details, findings) = (details(&loaded.findings), loaded.findings);
         let mut object = Object::new(Shared::new(loaded.model), material);
         object.texture = texture;
         let name = object.name.clone();
@@ -293,6 +293,7 @@ impl App {
         if !details.is_empty() {
             self.state.notices.push(Notice::new(NoticeKind::Opened, said).with(details));
         }
+        self.offer_texture(id, &findings);
         if unseen {
             let notice = Notice::new(NoticeKind::Unseen, format!("{name}{OUT_OF_VIEW}"));
             self.state.notices.push(notice.offering(Some(Offer::Frame(id))));

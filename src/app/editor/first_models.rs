@@ -122,8 +122,11 @@ impl App {
             self.state.tell(Some(format!("Opened {}", object.name)));
             if only.is_some() || !findings.is_empty() {
                 let offer = only.filter(|_| object.model.source.is_some()).map(Offer::Up);
-                let notice = Notice::new(NoticeKind::Opened, said).with(findings);
+                let notice = Notice::new(NoticeKind::Opened, said).with(details(&findings));
                 self.state.notices.push(notice.offering(offer));
+            }
+            if let Some(id) = only {
+                self.offer_texture(id, &findings);
             }
         }
         let ids: Vec<_> = self.state.scene.objects.ids().collect();
@@ -163,6 +166,9 @@ impl App {
                     state.viewpoints = Viewpoints::new(first);
                 });
                 self.first_steps = Some(steps);
+                // Nothing is lost yet: the models are files. Their figures are not known yet.
+                self.state.history.mark_saved();
+                self.state.dial.last = None;
             }
         }
         Ok(())
@@ -226,7 +232,7 @@ fn arrived(path: &Path, usual: UpAxis, progress: &Progress) -> Result<Arrived, L
     let material = own_or_silver(&loaded);
     let Loaded { model, findings } = loaded;
     let object = Object::new(Shared::new(model), material);
-    Ok(Arrived { object, said, findings: details(&findings) })
+    Ok(Arrived { object, said, findings })
 }
 
 #[expect(clippy::cast_precision_loss, reason = "the number of files on a command line")]

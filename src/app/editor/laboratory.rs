@@ -16,7 +16,7 @@ use crate::app::actions::LabRequest;
 use crate::app::state::laboratory::Compare;
 use crate::app::state::{DrawingChoices, State};
 use crate::app::tasks::{Outcome, Task};
-use marraztu_core::accuracy::{AXES, Axis};
+use marraztu_core::accuracy::{AXES, Axis, Settings};
 use marraztu_core::base::image::Size;
 use marraztu_core::edit::selection;
 use marraztu_io as io;
@@ -323,7 +323,9 @@ impl App {
     fn explain(&mut self, ctx: &Context, at: [usize; 2]) {
         self.state.lab.picking = false;
         let Some(size) = self.viewport.size() else { return };
-        let settings = self.state.settings;
+        // The picture at rest, as it is compared and shown.
+        let samples = self.state.refined_to().unwrap_or(self.state.settings.samples);
+        let settings = Settings { samples, ..self.state.settings };
         let mut studio = Studio::new(self.state.shot(size));
         // The renderer draws the picture again to name the item at the pixel.
         let work = move |_: &io::Progress| {
@@ -470,6 +472,8 @@ impl App {
 fn compare_of(axis: &Axis) -> Compare {
     match axis.key {
         "rounding" => Compare::Error(256),
+        // The edge of the shadow lies in the left half of the picture.
+        "terminator" => Compare::Split(0.2),
         _ => Compare::Split(0.5),
     }
 }

@@ -209,9 +209,9 @@ impl App {
     /// Hides the greeting after the first action.
     fn end_greeting(&mut self) {
         let State { history, path, lab, panels, .. } = &self.state;
-        let has_begun =
-            history.position() > 0 || path.is_some() || lab.away || panels.has(Panel::Laboratory);
-        if has_begun || !self.loading.is_empty() {
+        // A lesson keeps it for the time after.
+        let has_begun = history.position() > 0 || path.is_some() || panels.has(Panel::Laboratory);
+        if !lab.away && has_begun || !self.loading.is_empty() {
             self.state.greeting = false;
         }
     }
@@ -252,7 +252,7 @@ impl App {
         let answer = if self.state.picture_only { None } else { self.dialogs.ui(&ctx) };
         let pressed = Keyboard::take(&ctx);
         if Keyboard::take_escaped(&ctx) {
-            self.quits_until = None;
+            self.forget_quitting();
         }
 
         // Requests are answered last, so everything in a frame shows the same scene.

@@ -5,8 +5,10 @@ use egui::Context;
 use super::App;
 use crate::app::actions::Request;
 use crate::app::documents::dialogs::Dialog;
-use crate::app::state::{Notice, NoticeGroup, NoticeKind, Offer};
+use crate::app::state::{Notice, NoticeGroup, NoticeKind, Offer, State};
 use marraztu_core::edit::{Gesture, Refusal, framing};
+use marraztu_core::scene::{Object, ObjectId, Shape};
+use marraztu_io::{Finding, FindingKind};
 
 impl App {
     /// Does what the notices of a kind offer, and removes them.
@@ -29,7 +31,24 @@ impl App {
             }
             Err(refusal) => self.refuse(refusal.to_string()),
         }
-        self.state.notices.retain(|notice| !of_kind(notice));
+        // A missing texture stays missing until one is chosen, which withdraws its notice.
+        self.state.notices.retain(|notice| !of_kind(notice) || kind == NoticeKind::Texture);
+    }
+
+    /// Offers to find the texture of an object with these findings about its file, if it is missing
+    /// and the only one: the texture of an object covers all of it.
+    pub(super) fn offer_texture(&mut self, id: ObjectId, findings: &[Finding]) {
+        let mut missing = findings.iter().filter(|it| it.kind == FindingKind::TextureMissing);
+        let (Some(Finding { count: 1, .. }), None) = (missing.next(), missing.next()) else {
+            return;
+        };
+        let Some(object) = self.state.scene.objects.get(id) else { return };
+        let parts = u32::try_from(object.model.mesh.parts().len()).unwrap_or(u32::MAX);
+        if (0..parts).all(|part| object.part_look(part).texture.is_none()) {
+            let text = format!("The texture of {} was not found", object.name);
+            let notice = Notice::new(NoticeKind::Texture, text);
+            self.state.notices.push(notice.offering(Some(Offer::Texture(id))));
+        }
     }
 
     /// Returns the request for offers of one kind; `None` if files have to be read again first.
@@ -39,6 +58,10 @@ impl App {
             let ids: Vec<_> = offers.iter().filter_map(|offer| offer.object()).collect();
             let command = framing::objects(scene, view, &ids)?;
             return Ok(Some(Request::Navigate { command, gesture }));
+        }
+        if matches!(offers.first(), Some(Offer::Texture(_))) {
+            let ids = offers.iter().filter_map(|offer| offer.object()).collect();
+            return Ok(Some(Request::ChooseTexture(ids)));
         }
         let change = Offer::command(offers, scene)?;
         Ok(change.map(|(command, label)| Request::Change { command, gesture, label }))
@@ -50,6 +73,29 @@ impl App {
         if let Some(group) = groups.iter().find(|group| group.kind == kind) {
             self.dialogs.show(Dialog::Details(group.text(), group.details()));
         }
+    }
+
+    /// Lists all notices in a dialog: those that are shown, and those before.
+    pub(super) fn show_past_notices(&mut self) {
+        let State { notices, past_notices, .. } = &self.state;
+        let all = notices.iter().chain(past_notices.iter().rev());
+        let lines = all.flat_map(|notice| {
+            let details = notice.details.iter().map(|line| format!("    {line}"));
+            std::iter::once(notice.text.clone()).chain(details)
+        });
+        let lines: Vec<String> = lines.collect();
+        match lines.is_empty() {
+            true => self.state.tell(Some("There were no notices".to_owned())),
+            false => self.dialogs.show(Dialog::Details("Notices".to_owned(), lines)),
+        }
+    }
+
+    /// Returns whether the grid on the ground is on, and behind a ground.
+    pub(super) fn hides_grid(&self) -> bool {
+        let State { scene, view, helpers, .. } = &self.state;
+        let is_ground = |object: &Object| Shape::of(&object.model) == Some(Shape::Ground);
+        let mut all = scene.objects.iter();
+        helpers.grid && all.any(|(id, object)| is_ground(object) && view.shows(id, object))
     }
 
     /// Dismisses all notices, which stay in the list of the status line. Unsaved work of a crashed

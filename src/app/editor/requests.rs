@@ -87,7 +87,6 @@ impl App {
             // Notices.
             Request::Accept(kind) => self.accept(ctx, kind),
             Request::Details(kind) => self.show_details(kind),
-            Request::PutAway(kind) => state.notices.retain(|notice| notice.kind != kind),
             Request::Settle(kind) => state.settle_notices(|notice| notice.kind == kind),
             Request::DismissNotices => {
                 self.dismiss_notices();
@@ -128,7 +127,7 @@ impl App {
         // The action is resolved against the scene as it is now, which also decides its
         // availability.
         if action != Action::Escape {
-            self.quits_until = None;
+            self.forget_quitting();
         }
         let resolved = resolve(action, &self.state, self.state.phase(gesture));
         // The lights that are on are remembered, to restore them when the user ends the solo.
@@ -143,7 +142,13 @@ impl App {
             Ok(Intent::ToViewpoint(step)) => self.go_to_viewpoint(step),
             Ok(Intent::View(view)) => self.show_view(*view),
             Ok(Intent::Select(selection)) => self.select(*selection, gesture),
-            Ok(Intent::Show(change)) => change(&mut self.state),
+            Ok(Intent::Show(change)) => {
+                change(&mut self.state);
+                if action == Action::ToggleGrid && self.hides_grid() {
+                    let text = "The ground hides the grid, which is drawn behind everything";
+                    self.state.tell(Some(text.to_owned()));
+                }
+            }
             Ok(Intent::Theme(theme)) => {
                 self.state.theme = theme;
                 ctx.set_theme(theme);
@@ -172,6 +177,7 @@ impl App {
             Ok(Intent::FitExposure) => self.fit_exposure(),
             Ok(Intent::Loupe) => self.toggle_loupe(ctx),
             Ok(Intent::TypeAmount) => self.type_amount(ctx),
+            Ok(Intent::PastNotices) => self.show_past_notices(),
             Ok(Intent::ChangeKeyboardOwner(way)) => Keyboard::change_owner(ctx, way),
             Ok(Intent::Escape) => self.escape(ctx),
         }

@@ -173,8 +173,25 @@ fn notice(state: &State, (id, size): (ObjectId, Size), why: &Unseen) -> Option<N
         let notice = Notice::new(NoticeKind::Unseen, format!("{name}{OUT_OF_VIEW}"));
         return Some(notice.offering(Some(Offer::Frame(id))));
     }
+    // From inside, all faces of a closed surface are turned away.
+    if kind == NoticeKind::TurnedAway && surrounds_observer(state, object) {
+        let notice = Notice::new(NoticeKind::Unseen, format!("The camera is inside {name}"));
+        return Some(notice.offering(Some(Offer::Frame(id))));
+    }
     let notice = Notice::new(kind, format!("Nothing of {name} is visible: {why}"));
     Some(notice.offering(Some(offer).filter(|_| has_faces)))
+}
+
+/// Returns whether the observer is inside the box of an object, which is not flat.
+fn surrounds_observer(state: &State, object: &Object) -> bool {
+    let State { scene, view, .. } = state;
+    let eye = scene.observer_frame(view).w_axis.truncate();
+    let eye = object.world_from_mesh(view.time).inverse().transform_point3(eye);
+    object
+        .model
+        .mesh
+        .bounds()
+        .is_some_and(|bounds| bounds.min.cmplt(bounds.max).all() && bounds.nearest_to(eye) == eye)
 }
 
 /// Returns whether an object would be outside of the picture or too small to notice.

@@ -4,6 +4,9 @@
 //! never move the focus or click a button, even if the viewport gets the focus in the same frame.
 //! While text is edited, a menu is open, or a control of a panel has the focus, these keys are left
 //! to egui.
+//!
+//! A slow frame may bring many keys at once. All keys of a frame have the same owner, so what
+//! follows a key that moves the focus, or opens a field, waits for a later frame.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -12,6 +15,7 @@ use egui::{Context, Event, Id, Key, Modifiers, RawInput, ViewportCommand};
 
 use super::keymap::{Keymap, chord_of};
 use crate::app::actions::{Action, Chord, Group};
+use crate::app::panels::Panel;
 use crate::app::widgets::gestures;
 use crate::app::widgets::regions::{self, Way};
 use marraztu_core::edit::Gesture;
@@ -55,6 +59,34 @@ pub(crate) struct Keyboard {
     asks_paste: bool,
     /// The action that waits for a key, and the key once it was pressed.
     choosing: Option<(Action, Option<Chord>)>,
+    /// The events that wait for a later frame.
+    later: Vec<Event>,
+    /// The number of frames in which a field may still get the focus that a key has opened. Keys
+    /// wait for it.
+    opening: u8,
+}
+
+/// The frames from the key of an action to the focus of the field that it opens: in the next one
+/// the field is shown, and in the one after it has the focus.
+const OPENING: u8 = 3;
+
+/// Returns whether an action opens a field for text.
+const fn opens_field(action: Action) -> bool {
+    matches!(
+        action,
+        Action::Palette
+            | Action::Rename
+            | Action::Load
+            | Action::Open
+            | Action::SaveAs
+            | Action::SavePicture
+            | Action::PictureOptions
+            | Action::SaveTurntable
+            | Action::ExportModels
+            | Action::ExportScene
+            | Action::ChooseTexture
+            | Action::Panel(Panel::CheatSheet)
+    )
 }
 
 impl Keyboard {
@@ -205,7 +237,8 @@ impl Keyboard {
             Owner::Panel => chord.is_global(),
             // A text field has an undo stack for its text.
             Owner::Text => chord.is_global() && info.group != Group::Edit,
-            Owner::Modal => false,
+            // The program can be closed before its dialog.
+            Owner::Modal => action == Action::Quit,
         };
         if !acts || (self.last_was_repeat && !info.repeats) {
             return;
@@ -217,6 +250,9 @@ impl Keyboard {
             true => gestures::numbered(self.presses, "key"),
             false => Gesture::Whole,
         };
+        if opens_field(action) {
+            self.opening = OPENING;
+        }
         self.waiting.push(Press { action, gesture });
     }
 }
@@ -260,6 +296,17 @@ impl egui::Plugin for Keyboard {
 
     fn input_hook(&mut self, ctx: &Context, input: &mut RawInput) {
         let owner = self.whose(ctx);
+        let mut events = std::mem::take(&mut self.later);
+        events.append(&mut input.events);
+        input.events = events;
+        // Keys wait for a field to get the focus, but not for long: the action may have been
+        // refused.
+        self.opening = if owner == Owner::Viewport { self.opening.saturating_sub(1) } else { 0 };
+        if self.opening > 0 {
+            let first = input.events.iter().position(is_pressed).unwrap_or(input.events.len());
+            self.later = input.events.split_off(first);
+            ctx.request_repaint();
+        }
         // While a key is chosen, the first press is taken as the choice.
         if let Some((_, chosen @ None)) = &mut self.choosing {
             let pressed = input.events.iter().find_map(|event| match event {
@@ -275,8 +322,51 @@ impl egui::Plugin for Keyboard {
             let is_key = |event: &Event| matches!(event, Event::Key { .. } | Event::Text(_));
             input.events.retain(|event| !is_key(event) && clipboard_key(event).is_none());
         }
-        // The viewport's keys are removed from the events, so egui never sees them.
-        input.events.retain(|event| match event {
+        let mut typed = false;
+        let mut events = std::mem::take(&mut input.events).into_iter().peekable();
+        while let Some(event) = events.next_if(|event| !typed || !is_tab(event, owner)) {
+            typed |= is_pressed(&event);
+            let moves = moves_focus(&event, owner);
+            if self.take_event(ctx, owner, &event) {
+                input.events.push(event);
+            }
+            if moves || self.opening == OPENING {
+                // The text of the same key belongs to it.
+                let text = events.next_if(|event| matches!(event, Event::Text(_)));
+                let text = text.filter(|text| self.take_event(ctx, owner, text));
+                input.events.extend(text);
+                break;
+            }
+        }
+        let rest: Vec<Event> = events.collect();
+        if !rest.is_empty() {
+            self.later.splice(0..0, rest);
+            ctx.request_repaint();
+        }
+    }
+}
+
+/// Returns whether an event is a key press, or typed or pasted text.
+fn is_pressed(event: &Event) -> bool {
+    matches!(event, Event::Key { pressed: true, .. } | Event::Text(_) | Event::Paste(_))
+}
+
+/// Returns whether an event is a press of Tab that moves the focus: before the other events of its
+/// frame arrive anywhere.
+fn is_tab(event: &Event, owner: Owner) -> bool {
+    owner != Owner::Viewport && matches!(event, Event::Key { key: Key::Tab, pressed: true, .. })
+}
+
+/// Returns whether a key press moves the focus, or ends a field.
+fn moves_focus(event: &Event, owner: Owner) -> bool {
+    let ends = matches!(event, Event::Key { key: Key::Enter | Key::Escape, pressed: true, .. });
+    is_tab(event, owner) || (ends && owner != Owner::Viewport)
+}
+
+impl Keyboard {
+    /// Handles an event. Returns whether egui sees it: the keys of the viewport are not for egui.
+    fn take_event(&mut self, ctx: &Context, owner: Owner, event: &Event) -> bool {
+        match event {
             Event::Key { key, physical_key, pressed: true, modifiers, repeat } => {
                 let now = (owner, self.letters);
                 let held = self.down.insert(physical_key.unwrap_or(*key), now);
@@ -323,6 +413,6 @@ impl egui::Plugin for Keyboard {
                 true
             }
             _ => true,
-        });
+        }
     }
 }

@@ -36,7 +36,7 @@ const THUMBNAIL: Vec2 = vec2(144.0, 90.0);
 /// Returns whether the greeting is shown over this picture.
 pub(super) fn is_shown(state: &State, picture: Rect) -> bool {
     let is_small = picture.size().min_elem() < LEAST_SIDE || picture.area() < LEAST_AREA;
-    state.greeting && state.overlays && !is_small
+    state.greeting && !state.lab.away && state.overlays && !is_small
 }
 
 pub(crate) fn show(ui: &Ui, picture: Rect, state: &State, requests: &mut Requests) {

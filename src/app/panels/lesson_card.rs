@@ -80,8 +80,8 @@ fn cost_ui(ui: &mut Ui, lesson: &Lesson, state: &State, requests: &mut Requests)
     let chosen = lesson.axis().chosen(&state.settings);
     let line = cost.and_then(|cost| cost.choices.get(chosen.word));
     let text = match (line, state.lab.running) {
-        (Some(line), _) => line.clone(),
-        (None, Some(part)) => format!("Measuring on this machine: {:.0}%", part * 100.0),
+        (_, Some(part)) => format!("Measuring on this machine: {:.0}%", part * 100.0),
+        (Some(line), None) => line.clone(),
         (None, None) => match (chosen.among)(&state.settings)
             .and_then(|()| (chosen.sense)(&state.scene, &state.view))
         {
@@ -90,13 +90,15 @@ fn cost_ui(ui: &mut Ui, lesson: &Lesson, state: &State, requests: &mut Requests)
         },
     };
     // The picture keeps its size when the figures arrive.
-    let lines = 2.0 * ui.text_style_height(&TextStyle::Body);
+    let lines = 3.0 * ui.text_style_height(&TextStyle::Body);
     ui.allocate_ui(vec2(ui.available_width(), lines), |ui| {
         ui.set_min_height(lines);
         ui.horizontal_top(|ui| {
             let button = ui.spacing().interact_size.y * 5.0;
             let width = ui.available_width() - button;
             ui.allocate_ui(vec2(width, lines), |ui| {
+                // The button keeps its place when the figures arrive.
+                ui.set_min_width(width);
                 let label = ui.add(egui::Label::new(RichText::new(text).weak()).wrap());
                 if let Some(cost) = cost {
                     label.on_hover_text(&cost.all);

@@ -244,7 +244,7 @@ fn notice_ui(ui: &mut Ui, group: &NoticeGroup<'_>, state: &State, requests: &mut
             requests.push(Request::Details(group.kind));
         }
         if button(ui, "Dismiss") {
-            requests.push(Request::PutAway(group.kind));
+            requests.push(Request::Settle(group.kind));
         }
     });
     if !group.needs_answer() {

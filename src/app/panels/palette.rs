@@ -26,6 +26,9 @@ const WIDTH: f32 = 560.0;
 /// The maximum number of results.
 const MOST: usize = 60;
 
+/// The loss in rank of what cannot be done now.
+const UNAVAILABLE: u32 = 1000;
+
 /// A result of the search.
 struct Entry {
     label: String,
@@ -173,7 +176,12 @@ fn found(keymap: &Keymap, state: &State, query: &str) -> Vec<Entry> {
         let written = format!("#{r:02x}{g:02x}{b:02x}");
         colors(state, (&written, color), |_| Some(u32::MAX), &mut entries);
     }
-    entries.sort_by_key(|entry| std::cmp::Reverse(entry.score));
+    // What cannot be done now ranks below equal matches, and below most others.
+    let rank = |entry: &Entry| match entry.refused {
+        None => entry.score,
+        Some(_) => entry.score.saturating_sub(UNAVAILABLE),
+    };
+    entries.sort_by_key(|entry| std::cmp::Reverse(rank(entry)));
     entries.truncate(MOST);
     entries
 }
@@ -290,10 +298,14 @@ fn settings(state: &State, search: &mut Search, entries: &mut Vec<Entry>) {
         add(label, "quality preset", "Setting", preset.what, to == now, Request::Settings(to));
     }
     for axis in AXES {
+        // The words of its lesson are those of its choices, too.
+        let words = lessons().iter().find(|lesson| lesson.axis == axis.key);
+        let words = words.map_or("", |lesson| lesson.words.as_str());
+        let words = format!("accuracy quality {words}");
         for choice in axis.choices {
             let label = format!("{}: {}", axis.label, choice.label);
             let to = Request::Settings(choice.of(&now));
-            add(label, "accuracy quality", "Setting", choice.what, choice.is(&now), to);
+            add(label, &words, "Setting", choice.what, choice.is(&now), to);
         }
     }
     for lesson in lessons() {

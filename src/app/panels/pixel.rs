@@ -32,10 +32,14 @@ pub(crate) fn show(ctx: &Context, state: &State, picture: Rect, requests: &mut R
     let Some(pixel) = &state.explained else { return };
     let mut open = true;
     let [x, y] = pixel.at;
-    let place = pos2(picture.right() - 372.0, picture.top() + AXES).max(picture.min);
+    // Away from the pixel, which stays visible.
+    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^24 pixels a side")]
+    let is_right = x as f32 * 2.0 > pixel.shot.size.width as f32;
+    let left = if is_right { picture.left() + 12.0 } else { picture.right() - 372.0 };
+    let place = pos2(left, picture.top() + AXES).max(picture.min);
     let most = (picture.height() - AXES - 28.0).max(160.0);
     Window::new(format!("Pixel {x}, {y}"))
-        .id(egui::Id::unique("explained pixel"))
+        .id(egui::Id::unique(("explained pixel", is_right)))
         .open(&mut open)
         .default_pos(place)
         .default_width(360.0)
@@ -135,7 +139,7 @@ fn sum_ui(ui: &mut Ui, pixel: &ExplainedPixel, explained: &PixelColor) {
     let strong = ui.visuals().strong_text_color();
     let plain = ui.visuals().text_color();
     term_ui(ui, "in steps of a byte", ["red", "green", "blue"].map(str::to_owned), weak);
-    for term in pixel::rows(&pixel.shot.scene, explained) {
+    for term in pixel::rows(&pixel.shot.scene, explained, 3) {
         let color = if term.value == [0.0; 3] { weak } else { plain };
         term_ui(ui, &term.label, term.value.map(number), color);
     }

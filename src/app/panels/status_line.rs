@@ -184,10 +184,12 @@ fn parts(state: &State) -> Vec<String> {
         let time = format!("{:.1} ms", statistics.time.as_secs_f64() * 1000.0);
         // Refining takes longer, and is not timed.
         let is_refined = statistics.refined.is_some_and(|now| now != state.settings.samples);
-        parts.push(match is_refined {
+        // The dial has times of many pictures, and this one may have been the first.
+        let is_told = is_refined && state.shows_dial() && state.dial.current;
+        parts.extend((!is_told).then(|| match is_refined {
             false => time,
             true => format!("{} took {time}", samples(state.settings.samples)),
-        });
+        }));
     }
     parts
 }

@@ -168,8 +168,9 @@ fn exposure_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
         if let Some((exposure, _)) = field.ui(ui, EXPOSURE_WIDTH, state.view.exposure) {
             change_view(requests, state, |view| view.exposure = exposure);
         }
-        requests.extend(Action::FitExposure.button(ui, state).map(Request::from));
     });
+    // Next to the field, it would be wider than the panel, and so would all rows below it.
+    row(ui, "", |ui| requests.extend(Action::FitExposure.button(ui, state).map(Request::from)));
 }
 
 /// Shows the lights that have keys as a row of small switches.
@@ -260,8 +261,8 @@ fn settings_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
 /// Shows the preferences for drawing: refinement, and the time budget while moving.
 fn drawing_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let now = state.drawing;
-    let hint = "The samples per pixel in the window while nothing moves. Files and the laboratory \
-        keep the setting above.";
+    let hint = "The samples per pixel while nothing moves, and of saved pictures. The setting \
+        above is for the moving picture.";
     let refined = Samples::ALL[1..]
         .iter()
         .map(|samples| (format!("{} samples", samples.count()), Some(*samples), hint));

@@ -56,13 +56,15 @@ pub enum NoticeKind {
     TurnedAway,
     /// An object is wholly transparent.
     Transparent,
+    /// The texture of a model is missing.
+    Texture,
     /// The program's own files and fonts.
     Program,
 }
 
 impl NoticeKind {
     /// All kinds, in the order in which they are shown.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Opened,
         Self::Written,
         Self::Changed,
@@ -70,6 +72,7 @@ impl NoticeKind {
         Self::Hidden,
         Self::TurnedAway,
         Self::Transparent,
+        Self::Texture,
         Self::Program,
     ];
 }
@@ -102,6 +105,9 @@ impl Notice {
             Offer::Frame(id) | Offer::Opaque(id) => object(id).is_some_and(|object| object.visible),
             Offer::TwoSides(id) => object(id).is_some_and(|object| !object.is_two_sided()),
             Offer::Up(id) => object(id).is_some(),
+            Offer::Texture(id) => {
+                object(id).is_some_and(|object| object.part_look(0).texture.is_none())
+            }
             Offer::Reload(path) => {
                 let mut all = scene.objects.iter().map(|(_, object)| &object.model);
                 all.any(|model| model.source.as_ref() == Some(path))
@@ -147,6 +153,7 @@ impl<'a> NoticeGroup<'a> {
             NoticeKind::TurnedAway => format!("All faces of {count} objects are turned away"),
             NoticeKind::Transparent => format!("{count} objects are wholly transparent"),
             NoticeKind::Changed => format!("{count} models have changed on disk"),
+            NoticeKind::Texture => format!("The textures of {count} models were not found"),
             NoticeKind::Opened | NoticeKind::Written | NoticeKind::Program => {
                 format!("{} (and {} more)", last.text, count - 1)
             }
@@ -201,6 +208,8 @@ pub enum Offer {
     Opaque(ObjectId),
     /// Choose the axis of its file that points up.
     Up(ObjectId),
+    /// Choose the texture of an object.
+    Texture(ObjectId),
     /// Read a model again.
     Reload(PathBuf),
 }
@@ -217,6 +226,7 @@ impl Offer {
             Self::Show(_) => "Show",
             Self::Opaque(_) => "Make opaque",
             Self::Up(_) => "Up axis",
+            Self::Texture(_) => "Find...",
             Self::Reload(_) => "Reload",
         }
     }
@@ -228,6 +238,7 @@ impl Offer {
             | Self::TwoSides(id)
             | Self::Show(id)
             | Self::Opaque(id)
+            | Self::Texture(id)
             | Self::Up(id) => Some(*id),
             Self::Reload(_) => None,
         }
@@ -241,7 +252,7 @@ impl Offer {
             }
             Self::Show(_) => (["Show ", ""], |object: &mut Object| object.visible = true),
             Self::Opaque(_) => (["Make ", " opaque"], make_opaque),
-            Self::Frame(_) | Self::Up(_) | Self::Reload(_) => return None,
+            Self::Frame(_) | Self::Up(_) | Self::Texture(_) | Self::Reload(_) => return None,
         })
     }
 

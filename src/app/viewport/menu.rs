@@ -3,7 +3,7 @@
 use egui::{Id, Ui};
 
 use super::Viewport;
-use crate::app::actions::{ADD_LIGHTS, Action, Request, Requests};
+use crate::app::actions::{ADD_LIGHTS, ADD_OBJECTS, Action, Request, Requests};
 use crate::app::state::State;
 use marraztu_core::scene::ItemId;
 
@@ -18,7 +18,7 @@ impl Viewport {
             .accessible_name("Viewport menu")
             .open_memory(None);
         popup.show(|ui| {
-            let (actions, lights): (_, &[Action]) =
+            let (actions, others): (_, [&[Action]; 2]) =
                 match menu.item.filter(|item| state.scene.contains(*item)) {
                     Some(item) => {
                         // The actions of one of several selected items act on all of them.
@@ -27,19 +27,19 @@ impl Viewport {
                             false => ui.weak(state.name(item).unwrap_or_default()),
                         };
                         ui.separator();
-                        (actions_on(item), &[])
+                        (actions_on(item), [&[]; 2])
                     }
-                    None => (ON_NOTHING, &ADD_LIGHTS),
+                    None => (ON_NOTHING, [&ADD_OBJECTS, &ADD_LIGHTS]),
                 };
-            for action in actions.iter().chain(lights) {
+            for action in actions.iter().chain(others.into_iter().flatten()) {
                 requests.extend(action.menu_item(ui, state).map(Request::Do));
             }
         });
     }
 }
 
-/// The menu of the background; the lights to add follow it.
-const ON_NOTHING: &[Action] = &[Action::FrameAll, Action::Load, Action::AddCamera];
+/// The menu of the background; the objects and lights to add follow it.
+const ON_NOTHING: &[Action] = &[Action::FrameAll, Action::Paste, Action::AddCamera];
 
 const fn actions_on(item: ItemId) -> &'static [Action] {
     match item {

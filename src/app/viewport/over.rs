@@ -106,8 +106,8 @@ impl Viewport {
     fn items_in(&self, state: &State, over: &Over, area: Rect) -> Vec<ItemId> {
         let Some((rect, size)) = self.place else { return Vec::new() };
         let onto = Projection::new(state, rect, size);
-        let mut items: Vec<ItemId> =
-            picking::objects_within(state, &onto, area).into_iter().map(ItemId::Object).collect();
+        let objects = picking::objects_within(state, &onto, area, size);
+        let mut items: Vec<ItemId> = objects.into_iter().map(ItemId::Object).collect();
         let eye = state.scene.observer_frame(&state.view).w_axis.truncate();
         let cameras = state.scene.cameras.iter().filter(|(_, camera)| {
             let at = camera.pose.now().eye;

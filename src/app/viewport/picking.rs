@@ -1,13 +1,13 @@
 //! Finds all objects under the pointer, nearest first. The z-buffer of the picture knows only the
 //! nearest.
 
-use egui::Rect;
+use egui::{Pos2, Rect};
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
 use super::marks::Projection;
 use crate::app::state::State;
 use marraztu_core::base::image::Size;
-use marraztu_core::scene::{Object, ObjectId, dvec3};
+use marraztu_core::scene::{Object, ObjectId, Shape, dvec3};
 
 /// The transformations from an object's mesh to the picture.
 struct Onto {
@@ -56,13 +56,35 @@ pub(crate) fn objects_at(state: &State, [x, y]: [usize; 2], size: Size) -> Vec<O
     found.into_iter().map(|(_, id)| id).collect()
 }
 
-/// Lists the drawn objects with a vertex in a part of the window.
-pub(crate) fn objects_within(state: &State, onto: &Projection, area: Rect) -> Vec<ObjectId> {
+/// Lists the drawn objects in a part of the window: with a vertex in it, or with a surface at its
+/// middle or at a corner. A ground counts only if nothing else is there.
+pub(crate) fn objects_within(
+    state: &State,
+    onto: &Projection,
+    area: Rect,
+    size: Size,
+) -> Vec<ObjectId> {
+    let points =
+        [area.center(), area.left_top(), area.right_top(), area.left_bottom(), area.right_bottom()];
+    let rect = onto.rect();
+    let pixel = |at: Pos2| {
+        let part = (at - rect.min) / rect.size();
+        #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^53 pixels")]
+        DVec2::new(f64::from(part.x) * size.width as f64, f64::from(part.y) * size.height as f64)
+    };
     let touches = |object: &Object| {
         let mut vertices = object.placed_vertices(state.view.time);
-        vertices.any(|p| onto.place(p).is_some_and(|at| area.contains(at)))
+        let at_points = || {
+            let own = Onto::new(state, object, size);
+            points.iter().any(|at| nearest_depth(&own, object, pixel(*at)).is_some())
+        };
+        vertices.any(|p| onto.place(p).is_some_and(|at| area.contains(at))) || at_points()
     };
-    drawn(state).filter(|(_, object)| touches(object)).map(|(id, _)| id).collect()
+    let found: Vec<_> = drawn(state).filter(|(_, object)| touches(object)).collect();
+    let is_ground = |object: &Object| Shape::of(&object.model) == Some(Shape::Ground);
+    let only_ground = found.iter().all(|(_, object)| is_ground(object));
+    let counts = |(_, object): &(ObjectId, &Object)| only_ground || !is_ground(object);
+    found.into_iter().filter(counts).map(|(id, _)| id).collect()
 }
 
 /// Lists the objects that the view shows.
@@ -153,7 +175,10 @@ mod tests {
         assert_eq!(objects_at(&state, [400, 300], size), [ObjectId(102)]);
         let rect = Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(800.0, 600.0));
         let onto = Projection::new(&state, rect, size);
-        assert_eq!(objects_within(&state, &onto, rect), [ObjectId(102)]);
+        assert_eq!(objects_within(&state, &onto, rect, size), [ObjectId(102)]);
+        // Inside of its nearest face, without a vertex.
+        let inside = Rect::from_center_size(rect.center(), egui::vec2(4.0, 4.0));
+        assert_eq!(objects_within(&state, &onto, inside, size), [ObjectId(102)]);
     }
 
     #[test]

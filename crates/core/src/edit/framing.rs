@@ -16,7 +16,7 @@ use super::{Change, GesturePhase, Refusal, set_transform};
 use crate::base::math;
 use crate::scene::{
     Camera, CameraMode, Command, Intrinsics, Item, Lens, Object, ObjectId, Observer, Pose,
-    Projection, Scene, Tracked, View,
+    Projection, Scene, Shape, Tracked, View,
 };
 
 /// The bounding sphere to frame.
@@ -74,12 +74,19 @@ pub fn selection(scene: &Scene, view: &View) -> Change {
     objects(scene, view, &[id])
 }
 
-/// Frames everything visible (key Home).
+/// Frames everything visible (key Home). A ground reaches far beyond what stands on it, and is only
+/// framed if there is nothing else.
 ///
 /// # Errors
 /// If nothing is visible.
 pub fn all(scene: &Scene, view: &View) -> Change {
-    objects(scene, view, &shown(scene, view))
+    let all = shown(scene, view);
+    let is_ground = |id: &ObjectId| {
+        let object = scene.objects.get(*id);
+        object.is_some_and(|object| Shape::of(&object.model) == Some(Shape::Ground))
+    };
+    let others: Vec<_> = all.iter().copied().filter(|id| !is_ground(id)).collect();
+    objects(scene, view, if others.is_empty() { &all } else { &others })
 }
 
 /// Returns the objects that the view shows.

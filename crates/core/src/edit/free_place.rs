@@ -69,14 +69,16 @@ impl Site {
         let floor = bottom(floors.iter())
             .or_else(|| bottom(taken.iter().map(|(bounds, _)| bounds)))
             .or_else(|| bottom(rooms.iter()))
-            // A ground at the height of the eye would be seen edge-on.
-            .unwrap_or(if sight.eye.y.abs() < size / 2.0 { focus.y - size / 2.0 } else { 0.0 });
+            .unwrap_or(0.0);
         Self { sight, height, size, focus, floors, floor, taken }
     }
 
     /// Returns the place of the ground in a scene without objects.
     pub(super) fn floor_at_focus(&self) -> DVec3 {
-        DVec3::new(self.focus.x, self.floor, self.focus.z)
+        // A ground at the height of the eye would be seen edge-on.
+        let is_edge_on = self.sight.eye.y.abs() < self.size / 2.0;
+        let height = if is_edge_on { self.focus.y - self.size / 2.0 } else { self.floor };
+        DVec3::new(self.focus.x, height, self.focus.z)
     }
 
     /// Returns the centre of a free place for a solid of this height.

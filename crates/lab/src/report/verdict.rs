@@ -114,8 +114,18 @@ impl Report {
         // A model is measured against the chosen one, which may not be the default.
         let is_model = axis.kind == AxisKind::Model;
         if row.point == 0 {
+            // A model tells what its other choice costs.
+            let others = rows().filter(|row| is_model && row.point != 0);
+            let other = others.map(|row| axis.chosen(&points[row.point].settings)).next();
+            if let Some(said) = other.and_then(|other| self.verdict_on_choice(axis, other)) {
+                return Some(said);
+            }
             return Some(match is_model {
                 true => format!("{name}: no choice of a model is an error of another."),
+                // The picture at rest has more samples.
+                false if axis.key == "samples" => {
+                    format!("{name}, the default while something moves: error {error} of 255.")
+                }
                 false => format!("{name}, the default: error {error} of 255."),
             });
         }
@@ -127,26 +137,22 @@ impl Report {
             ));
         }
         let default = axis.in_words(axis.chosen(&points[0].settings));
+        let noise = percent(self.findings.noises([row.point].into_iter()));
         let time = match point.verdict {
-            Verdict::Alike => "the same time as".to_owned(),
-            Verdict::Busy => {
-                "no faster or slower, as far as this busy machine tells, than".to_owned()
-            }
+            Verdict::Alike => format!("the same time as {default} (noise {noise})"),
+            Verdict::Busy => format!("the machine is too busy to compare its time with {default}"),
             Verdict::Faster | Verdict::Slower => {
-                format!("{} the time of", times(point.ratio.quartiles.median))
+                let ratio = times(point.ratio.quartiles.median);
+                format!("{ratio} the time of {default} (noise {noise})")
             }
         };
-        let noise = percent(self.findings.noises([row.point].into_iter()));
-        let noise = format!(" (noise {noise})");
         Some(match is_model {
             // One of both is the reference.
             true => {
                 let error = digits(row.error.whole.rmse.max(before.error.whole.rmse));
-                format!("{name}: {time} {default}{noise}, and differs from it by {error} of 255.")
+                format!("{name}: {time}; the pictures differ by {error} of 255.")
             }
-            false => {
-                format!("{name}: {time} {default}{noise}, error {error} of 255 instead of {usual}.")
-            }
+            false => format!("{name}: {time}; error {error} of 255 instead of {usual}."),
         })
     }
 }

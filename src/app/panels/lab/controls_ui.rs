@@ -190,9 +190,10 @@ fn budget_ui(
         match (budget.found, report) {
             (Some(Some(place)), Some(report)) => {
                 let point = &report.findings.points[place];
-                let text = format!("{}, {} ms", point.name, brief(point.ms));
+                let text = format!("{} ms: {}", brief(point.ms), point.name);
                 let button = egui::Button::new(text).truncate();
-                if ui.add(button).on_hover_text("Draws the picture with these settings").clicked() {
+                let hint = format!("Draws the picture with these settings: {}", point.name);
+                if ui.add(button).on_hover_text(hint).clicked() {
                     requests.push(Request::Settings(report.chosen(place)));
                 }
             }

@@ -43,7 +43,11 @@ const COLUMNS: [Column; 7] = [
         share: 0.15,
         value: |point, _, _| {
             let quartiles = &point.ratio.quartiles;
-            format!("{} - {}", ratio(quartiles.lower), ratio(quartiles.upper))
+            match point.ratio.pairs {
+                // A picture that takes so long is drawn once.
+                1 => "once".to_owned(),
+                _ => format!("{} - {}", ratio(quartiles.lower), ratio(quartiles.upper)),
+            }
         },
     },
     Column {

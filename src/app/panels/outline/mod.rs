@@ -12,7 +12,7 @@ use egui::{
     Id, Popup, Rect, Role, ScrollArea, Sense, TextStyle, Ui, UiBuilder, WidgetInfo, pos2, vec2,
 };
 
-use crate::app::actions::{ADD_LIGHTS, Action, Request, Requests};
+use crate::app::actions::{ADD_LIGHTS, ADD_OBJECTS, Action, Request, Requests};
 use crate::app::input::buttons::action_icon;
 use crate::app::state::State;
 use crate::app::theme;
@@ -210,7 +210,16 @@ fn header_ui(ui: &mut Ui, state: &State, requests: &mut Requests, subject: Subje
 /// Shows the button that adds an item to a list.
 fn add_ui(ui: &mut Ui, state: &State, requests: &mut Requests, subject: Subject) {
     match subject {
-        Subject::Object => action_icon(ui, state, requests, Icon::PLUS, Action::Load),
+        Subject::Object => {
+            let response = icon_button(ui, Icon::PLUS, "Add an object", true);
+            Popup::menu(&response).show(|ui| {
+                ui.set_min_width(160.0);
+                for action in ADD_OBJECTS {
+                    requests.extend(action.menu_item(ui, state).map(Request::from));
+                }
+            });
+            response.on_hover_text("Adds a model or a shape");
+        }
         Subject::Camera => action_icon(ui, state, requests, Icon::PLUS, Action::AddCamera),
         Subject::Light => {
             let response = icon_button(ui, Icon::PLUS, "Add a light", true);

@@ -23,10 +23,11 @@ use crate::app::widgets::text::file_name;
 use marraztu_core::edit;
 use marraztu_core::scene::{ItemId, Transformation, UpAxis};
 
-/// Shows a button that makes the up axis of a model the default, unless it is the default already.
+/// Shows a button that makes the up axis of a model the default.
 pub(super) fn up_by_default_ui(ui: &mut Ui, state: &State, up: UpAxis, requests: &mut Requests) {
     let hint = format!("Opens models with {} up, unless their files state an axis", up.word());
-    if up != state.up && ui.button("Use for all from now on").on_hover_text(hint).clicked() {
+    let button = ui.add_enabled(up != state.up, egui::Button::new("Use for all from now on"));
+    if button.on_hover_text(hint).clicked() {
         requests.push(Request::UpByDefault(up));
     }
 }

@@ -96,8 +96,13 @@ impl Grab {
         Some(grab)
     }
 
-    pub(crate) const fn handle(&self) -> Handle {
-        self.handle
+    /// Returns the handle, along the axis that was typed.
+    pub(crate) fn handle(&self) -> Handle {
+        match (self.handle, self.typed.axis()) {
+            (Handle::Axis(_), Some(axis)) => Handle::Axis(axis),
+            (Handle::Ring(_), Some(axis)) => Handle::Ring(axis),
+            (handle, _) => handle,
+        }
     }
 
     /// Returns whether a number was typed, which counts as a drag even if the pointer has hardly
