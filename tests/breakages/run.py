@@ -156,6 +156,8 @@ def attempt(mine, where):
         broken((ROOT / breakage["file"]).read_text(), breakage)
     texts, together = schemata(mine)
     copy(where, texts)
+    # That of the copy: the sources may move on.
+    commit = output("git", "describe", "--always", "--dirty", "--exclude", "*", cwd=ROOT).stdout.strip()
     for case in sorted({TABLE[i]["case"] for i in mine}, key=str):
         if failed := claimed(where, case):
             sys.exit(f"run.py: fails unbroken: {', '.join(failed)}")
@@ -168,7 +170,6 @@ def attempt(mine, where):
         # Not by the case that claims it: by any?
         others = [] if caught else hard_cases(where, number=number)
         today = datetime.datetime.now(datetime.timezone.utc).date().isoformat()
-        commit = output("git", "describe", "--always", "--dirty", "--exclude", "*", cwd=ROOT).stdout.strip()
         came = "caught" if caught else "only by others" if others else "SURVIVED"
         line = "\t".join([today, commit, came, ", ".join(caught or others)])
         (WORK / f"{key(breakage)}.tsv").write_text(line + "\n")

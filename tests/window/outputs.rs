@@ -100,7 +100,7 @@ fn a_turntable_of_numbered_pictures_is_a_folder() {
 #[test]
 fn a_turntable_is_drawn_while_the_window_answers_and_a_cancelled_one_leaves_nothing() {
     let folder = tempfile::tempdir().unwrap();
-    let mut editor = Editor::small();
+    let mut editor = Editor::of_size(640.0, 480.0);
     editor.perform(Action::SaveTurntable);
     let ctx = editor.harness.ctx.clone();
     editor.click_label("Browse...");

@@ -64,6 +64,8 @@ pub(crate) struct Keyboard {
     /// The number of frames in which a field may still get the focus that a key has opened. Keys
     /// wait for it.
     opening: u8,
+    /// Whether the text of the key that opens it has not arrived yet.
+    awaits_own_text: bool,
 }
 
 /// The frames from the key of an action to the focus of the field that it opens: in the next one
@@ -303,8 +305,11 @@ impl egui::Plugin for Keyboard {
         // refused.
         self.opening = if owner == Owner::Viewport { self.opening.saturating_sub(1) } else { 0 };
         if self.opening > 0 {
-            let first = input.events.iter().position(is_pressed).unwrap_or(input.events.len());
-            self.later = input.events.split_off(first);
+            let first = input.events.iter().position(|event| match event {
+                Event::Text(_) => !std::mem::take(&mut self.awaits_own_text),
+                other => is_pressed(other),
+            });
+            self.later = input.events.split_off(first.unwrap_or(input.events.len()));
             ctx.request_repaint();
         }
         // While a key is chosen, the first press is taken as the choice.
@@ -333,6 +338,7 @@ impl egui::Plugin for Keyboard {
             if moves || self.opening == OPENING {
                 // The text of the same key belongs to it.
                 let text = events.next_if(|event| matches!(event, Event::Text(_)));
+                self.awaits_own_text = text.is_none();
                 let text = text.filter(|text| self.take_event(ctx, owner, text));
                 input.events.extend(text);
                 break;

@@ -27,7 +27,7 @@ const WIDTH: f32 = 560.0;
 const MOST: usize = 60;
 
 /// The loss in rank of what cannot be done now.
-const UNAVAILABLE: u32 = 1000;
+const UNAVAILABLE: u32 = 300;
 
 /// A result of the search.
 struct Entry {
@@ -53,13 +53,15 @@ pub(crate) fn show(ui: &Ui, state: &State, requests: &mut Requests) {
     let frame = egui::Frame::popup(&ui.ctx().global_style()).inner_margin(8.0);
     // The palette stays in place, whatever the number of results.
     let area = Modal::default_area(id).anchor(Align2::CENTER_TOP, vec2(0.0, 48.0));
+    let before = requests.len();
     let shown = Modal::new(id).area(area).frame(frame).show(ui.ctx(), |ui| {
         ui.set_width(width);
         contents(ui, state, requests, (room.y - 120.0).clamp(90.0, 420.0))
     });
     if shown.should_close() || shown.inner {
         forget(ui);
-        requests.push(Action::Palette.into());
+        // It closes before what was chosen is done, which may say something.
+        requests.insert(before, Action::Palette.into());
     }
 }
 
@@ -176,7 +178,7 @@ fn found(keymap: &Keymap, state: &State, query: &str) -> Vec<Entry> {
         let written = format!("#{r:02x}{g:02x}{b:02x}");
         colors(state, (&written, color), |_| Some(u32::MAX), &mut entries);
     }
-    // What cannot be done now ranks below equal matches, and below most others.
+    // What cannot be done now ranks below other matches of its kind.
     let rank = |entry: &Entry| match entry.refused {
         None => entry.score,
         Some(_) => entry.score.saturating_sub(UNAVAILABLE),
@@ -297,6 +299,12 @@ fn settings(state: &State, search: &mut Search, entries: &mut Vec<Entry>) {
         let label = format!("Accuracy: {}", preset.label);
         add(label, "quality preset", "Setting", preset.what, to == now, Request::Settings(to));
     }
+    for lesson in lessons() {
+        let show = Request::Lab(LabRequest::ShowLesson(&lesson.axis));
+        let label = format!("Lesson: {}", lesson.title);
+        let words = format!("learn help {}", lesson.words);
+        add(label, &words, "Lesson", &lesson.why, false, show);
+    }
     for axis in AXES {
         // The words of its lesson are those of its choices, too.
         let words = lessons().iter().find(|lesson| lesson.axis == axis.key);
@@ -307,12 +315,6 @@ fn settings(state: &State, search: &mut Search, entries: &mut Vec<Entry>) {
             let to = Request::Settings(choice.of(&now));
             add(label, &words, "Setting", choice.what, choice.is(&now), to);
         }
-    }
-    for lesson in lessons() {
-        let show = Request::Lab(LabRequest::ShowLesson(&lesson.axis));
-        let label = format!("Lesson: {}", lesson.title);
-        let words = format!("learn help {}", lesson.words);
-        add(label, &words, "Lesson", &lesson.why, false, show);
     }
     for example in EXAMPLES {
         let open = Request::LoadFiles(vec![example.path.into()]);

@@ -143,9 +143,13 @@ impl Regions {
         let holds = |region: &Region| {
             at.is_some_and(|at| region.column.contains(at) && region.top <= at.y + 1.0)
         };
-        // The column may hold several regions: the lowest one that begins above the place counts.
+        // A column may hold several regions: the lowest one that begins above the place counts. Of
+        // two columns, the inner one does: it may be scrolled, and the outer one is not.
         let there = self.shown.iter().enumerate().filter(|(_, region)| holds(region));
-        let there = there.max_by(|(_, a), (_, b)| a.top.total_cmp(&b.top));
+        let there = there.max_by(|(_, a), (_, b)| {
+            let inner = b.column.area().total_cmp(&a.column.area());
+            inner.then(a.top.total_cmp(&b.top))
+        });
         there
             .map(|(i, _)| i)
             .or_else(|| self.shown.iter().position(|region| Some(region.id) == self.current))
