@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use glam::{DMat4, DVec3};
 
 use super::dimples;
-use super::obj::parse;
+use super::load::parse;
 use super::progress::Progress;
 use super::texture::own_picture;
 use marraztu_core::base::Shared;

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use super::findings::Finding;
-use super::obj::Loaded;
+use super::loaded::Loaded;
 use marraztu_core::scene::{FileMaterial, Mesh, Model, Shape, Smoothing, UpAxis, Winding};
 
 /// Lists the shape, parts, materials and findings of a loaded file, line by line.

@@ -11,8 +11,10 @@ use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use super::error::{LoadError, shown};
-use super::obj::{Loaded, parse};
+use super::load::parse;
+use super::loaded::Loaded;
 use super::progress::Progress;
+use super::read::readable;
 use super::texture::own_picture;
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::Picture;
@@ -138,6 +140,17 @@ pub(super) fn resolved(folder: &Path, path: &str) -> Option<PathBuf> {
     let within = format!("{}/{path}", folder.to_str()?);
     let names = [path, &within];
     names.into_iter().find(|name| name.starts_with(FOLDER)).map(PathBuf::from)
+}
+
+/// Checks whether `path` is a file that can be read, or a built-in example, without reading it.
+///
+/// # Errors
+/// If it does not exist, or is not a file: a folder, a device, or a pipe that was not inherited.
+pub fn check_file(path: &Path) -> Result<(), LoadError> {
+    if scene_text(path).is_some() {
+        return Ok(());
+    }
+    readable(path).map(|_| ())
 }
 
 /// Returns the text of an example's scene file.

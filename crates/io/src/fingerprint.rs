@@ -6,9 +6,8 @@
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::Path;
 
-use super::obj::MOST_BYTES;
 use super::progress::Progress;
-use super::read::read;
+use super::read::{MOST_MODEL_BYTES, read};
 
 /// A hash of the content of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,7 +23,7 @@ impl Fingerprint {
     /// Returns whether saving to `path` would overwrite different content. This is so if the file
     /// exists and was changed or cannot be read.
     pub fn differs_from(self, path: &Path) -> bool {
-        match read(path, MOST_BYTES, &Progress::new()) {
+        match read(path, MOST_MODEL_BYTES, &Progress::new()) {
             Ok(content) => Self::of(&content) != self,
             Err(_) => path.exists(),
         }

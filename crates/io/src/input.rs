@@ -4,10 +4,11 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::error::{LoadError, shown};
-use super::obj::{Loaded, MOST_BYTES, parse};
+use super::load::parse;
+use super::loaded::Loaded;
 use super::packed::{MAGIC, Unpacked};
 use super::progress::Progress;
-use super::read::open as open_file;
+use super::read::{MOST_MODEL_BYTES, open as open_file};
 use super::scene_file::{Opened, SceneFileError, open_text};
 use super::stl::{crease_of, has_stl_content};
 use super::up_axis::{stated_in, stated_or_usual};
@@ -43,15 +44,15 @@ impl Input {
         // A pipe cannot be rewound, so the first bytes are chained in front of the rest.
         let packed = bytes == MAGIC;
         let all = std::io::Cursor::new(std::mem::take(&mut bytes)).chain(source);
-        let limit = u64::try_from(MOST_BYTES).unwrap_or(u64::MAX).saturating_add(1);
+        let limit = u64::try_from(MOST_MODEL_BYTES).unwrap_or(u64::MAX).saturating_add(1);
         let read = match packed {
             true => Unpacked::new(all).take(limit).read_to_end(&mut bytes),
             false => all.take(limit).read_to_end(&mut bytes),
         };
         read.map_err(system)?;
         // The limit is one byte higher, so reaching it shows that the input is too large.
-        if bytes.len() > MOST_BYTES {
-            return Err(LoadError::too_large(NAME, MOST_BYTES));
+        if bytes.len() > MOST_MODEL_BYTES {
+            return Err(LoadError::too_large(NAME, MOST_MODEL_BYTES));
         }
         Ok(Self { bytes, name: NAME.to_owned(), folder: PathBuf::new() })
     }
@@ -62,7 +63,7 @@ impl Input {
     /// # Errors
     /// If it cannot be read, or is too large.
     pub fn of_file(path: &Path) -> Result<Self, LoadError> {
-        let (file, _) = open_file(path, MOST_BYTES)?;
+        let (file, _) = open_file(path, MOST_MODEL_BYTES)?;
         let folder = path.parent().unwrap_or(Path::new("")).to_owned();
         Ok(Self { name: shown(path), folder, ..Self::read(file)? })
     }

@@ -30,7 +30,10 @@ mod input;
 mod keeping;
 mod layers;
 mod lessons;
+mod load;
+mod loaded;
 mod locate;
+mod mark;
 mod mtl;
 mod obj;
 mod packed;
@@ -53,7 +56,7 @@ pub use assets::{cam_model, default_scene, empty_scene, own_model, own_texture};
 pub use companions::{Companion, companions};
 pub use describe::{describe, describe_model};
 pub use error::LoadError;
-pub use examples::{EXAMPLES, Example, is_example};
+pub use examples::{EXAMPLES, Example, check_file, is_example};
 pub use export::{EXPORT_ENDINGS, ExportOptions, Exported, check_export_target, export};
 pub use findings::{Finding, FindingKind, joined};
 pub use fingerprint::Fingerprint;
@@ -67,14 +70,15 @@ pub use layers::{
     layers_exr,
 };
 pub use lessons::{Lesson, lesson_on, lesson_scene, lessons};
-pub use obj::{Loaded, load, parse};
+pub use load::{load, parse};
+pub use loaded::Loaded;
 pub use part::sweep_once;
 pub use picture::{
     NextBand, PICTURE_FORMATS, PictureFormat, check_alpha, check_layer_target,
     check_picture_target, check_replaced, save_bands, save_encoded, save_picture,
 };
 pub use progress::{Cancelled, Progress};
-pub use read::{check_file, read_file};
+pub use read::read_file;
 pub use replace::{NewFile, SaveError, check_scheme};
 pub use scene_file::{
     Fragment, Known, Opened, SCENE_ENDING, SceneFileError, items_of_text, items_to_text,

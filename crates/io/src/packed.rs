@@ -7,9 +7,8 @@ use std::path::Path;
 use flate2::read::MultiGzDecoder;
 
 use super::error::LoadError;
-use super::obj::MOST_BYTES;
 use super::progress::Progress;
-use super::read::{open, read};
+use super::read::{MOST_MODEL_BYTES, open, read};
 
 /// The first bytes of every gzip archive (RFC 1952, section 2.3.1).
 pub(super) const MAGIC: &[u8] = b"\x1F\x8B";
@@ -55,7 +54,7 @@ pub(super) fn model_name(file: &str) -> Cow<'_, str> {
 /// Reads the model at `path`, named `file` in messages, and unpacks it if it is packed. Fails if it
 /// cannot be read, is damaged or too large, or `progress` is cancelled.
 pub(super) fn unpacked(path: &Path, file: &str, progress: &Progress) -> Result<Vec<u8>, LoadError> {
-    unpacked_within(path, file, MOST_BYTES, progress)
+    unpacked_within(path, file, MOST_MODEL_BYTES, progress)
 }
 
 /// Works like [`unpacked`], for at most `most` bytes.

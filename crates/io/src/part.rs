@@ -18,7 +18,6 @@ use std::sync::atomic::{AtomicU16, Ordering};
 use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 
-use super::replace::folder;
 use marraztu_core::base::once::get_or_compute;
 
 /// The ending of temporary files.
@@ -67,6 +66,14 @@ fn random() -> u32 {
         let bits = RandomState::new().hash_one(own_process());
         u32::try_from(bits >> 32).unwrap_or_default()
     })
+}
+
+/// Returns the folder of a file.
+pub(super) fn folder(target: &Path) -> &Path {
+    match target.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
 }
 
 /// Creates a temporary file next to its target. Fails if it cannot be created.

@@ -5,8 +5,10 @@ use std::io::{Chain, Cursor, Read, Seek};
 use std::path::Path;
 
 use super::error::{LFS_POINTER, LoadError, NO_MEMORY, shown};
-use super::examples::scene_text;
 use super::progress::Progress;
+
+/// The most bytes in a text.
+pub(super) const MOST_MODEL_BYTES: usize = if usize::BITS > 32 { 4 << 30 } else { 1 << 30 };
 
 /// The most bytes of a text of materials.
 pub(super) const MOST_WORDS: usize = 64 << 20;
@@ -16,17 +18,6 @@ const MOST_UTF_16: u64 = 1 << 30;
 
 /// The number of bytes between two progress checks.
 const PIECE: usize = 8 << 20;
-
-/// Checks whether `path` is a file that can be read, or a built-in example, without reading it.
-///
-/// # Errors
-/// If it does not exist, or is not a file: a folder, a device, or a pipe that was not inherited.
-pub fn check_file(path: &Path) -> Result<(), LoadError> {
-    if scene_text(path).is_some() {
-        return Ok(());
-    }
-    readable(path).map(|_| ())
-}
 
 /// The first bytes of the files that Git LFS writes in place of contents, and of its predecessor's.
 const LFS_POINTERS: [&[u8]; 2] =
@@ -65,7 +56,7 @@ pub(super) fn is_lfs_pointer(head: &[u8]) -> bool {
 /// Rejects anything but a regular file before it is opened: opening a pipe would wait for a writer.
 /// A pipe that this program was started with, like `<(...)` in a shell, is already open and can be
 /// read.
-fn readable(path: &Path) -> Result<Metadata, LoadError> {
+pub(super) fn readable(path: &Path) -> Result<Metadata, LoadError> {
     let file = shown(path);
     let metadata = std::fs::metadata(path).map_err(|error| LoadError::system(&file, &error))?;
     match kind(metadata.file_type()) {

@@ -12,7 +12,7 @@ use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 use std::time::Duration;
 
 use super::error::{reason, shown};
-use super::part::{create_part, sweep_once};
+use super::part::{create_part, folder, sweep_once};
 use super::read::kind;
 use super::scene_file::paths::plain;
 
@@ -118,14 +118,6 @@ fn check_folder(path: &Path, target: &Path) -> Result<(), SaveError> {
         Err(error) => reason(&error),
     };
     Err(SaveError::new(path, reason))
-}
-
-/// Returns the folder of a file.
-pub(super) fn folder(target: &Path) -> &Path {
-    match target.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    }
 }
 
 /// Formats the folder of a file for messages.

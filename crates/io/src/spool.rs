@@ -10,8 +10,8 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use super::error::reason;
-use super::part::{create_part, sweep_once};
-use super::replace::{self, SaveError};
+use super::part::{self, create_part, sweep_once};
+use super::replace::SaveError;
 
 /// The name that temporary files are derived from.
 const NAME: &str = "records";
@@ -32,7 +32,7 @@ impl Spool {
     /// If it cannot be created.
     pub fn begin(folder: &Path) -> Result<Self, SaveError> {
         let target = folder.join(NAME);
-        sweep_once(replace::folder(&target));
+        sweep_once(part::folder(&target));
         let created = create_part(&target);
         let (file, path) = created.map_err(|error| SaveError::new(&target, reason(&error)))?;
         Ok(Self { path, file: BufWriter::new(file), end: 0 })

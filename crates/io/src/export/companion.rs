@@ -11,7 +11,7 @@ use std::path::Path;
 
 use memchr::memmem::find;
 
-use super::{MARK, escaped, is_signed};
+use crate::mark::{MARK, escaped, is_signed};
 use crate::replace::{SaveError, check_target};
 
 /// The text by which a glTF file shows that this program wrote it.

@@ -18,7 +18,8 @@ use gltf_json::{Index, Root};
 use super::gltf_buffer::Buffer;
 use super::look::{Detail, Looks};
 use super::names::Names;
-use super::{Content, ExportOptions, Format, escaped};
+use super::{Content, ExportOptions, Format};
+use crate::mark::escaped;
 use marraztu_core::scene::{Scene, View};
 
 pub(super) struct Writer<'a> {

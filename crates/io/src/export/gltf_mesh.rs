@@ -13,8 +13,9 @@ use gltf_json::validation::Checked;
 
 use super::gltf::Writer;
 use super::gltf_buffer::{Vertex, Vertices, columns, is_single, single, single3};
+use super::gltf_opacity::Layout;
 use super::gltf_surface::linear;
-use super::gltf_texture::{Layout, layouts};
+use super::gltf_texture::layouts;
 use super::look::{Maps, has_colors, polygons};
 use marraztu_core::base::math;
 use marraztu_core::scene::{MapKind, Mesh, NONE, NormalSource, Object, Triangle, dvec3};

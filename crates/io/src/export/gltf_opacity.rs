@@ -9,7 +9,7 @@ use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{Texture, Wrap};
 use rayon::prelude::*;
 
-use super::gltf_texture::Layout;
+use super::gltf_buffer::single;
 
 /// The most texels of a merged picture, unless the texture has more.
 const MOST_TEXELS: usize = 1 << 26;
@@ -23,6 +23,31 @@ const MOST_PERIODS: u32 = 64;
 /// The largest error of a common period, in periods of the smaller picture: less than a texel of
 /// most.
 const PERIOD_ERROR: f64 = 1.0 / 1024.0;
+
+/// The offset and scale of a texture on a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Layout {
+    pub(super) offset: [f64; 2],
+    pub(super) scale: [f64; 2],
+}
+
+impl Default for Layout {
+    fn default() -> Self {
+        Self { offset: [0.0; 2], scale: [1.0; 2] }
+    }
+}
+
+impl Layout {
+    pub(super) fn of(texture: &Texture) -> Self {
+        Self { offset: texture.offset, scale: texture.scale }
+    }
+
+    /// Returns texture coordinates with (0, 0) at the upper left.
+    pub(super) fn laid(&self, [u, v]: [f32; 2]) -> [f32; 2] {
+        let along = |x: f32, i: usize| f64::from(x) * self.scale[i] + self.offset[i];
+        [single(along(u, 0)), single(1.0 - along(v, 1))]
+    }
+}
 
 /// How a texture and an opacity map become one texture.
 #[derive(Debug)]

@@ -8,7 +8,7 @@ use std::collections::{BTreeSet, HashMap};
 use std::path::PathBuf;
 
 use super::gltf_opacity::{Merging, byte, with_pixels};
-use super::look::Look;
+use super::part_look::{Look, RoughMetal};
 use crate::error::short_name;
 use crate::texture::load_picture;
 use marraztu_core::base::Shared;
@@ -17,14 +17,6 @@ use marraztu_core::scene::{MapKind, Texture, UndrawnMap, Wrap};
 
 const ROUGHNESS: &str = "map_Pr";
 const METALNESS: &str = "map_Pm";
-
-/// The roughness and metalness of a look: factors, which multiply a texture.
-#[derive(Clone, Debug, Default)]
-pub(super) struct RoughMetal {
-    pub(super) texture: Option<Shared<Texture>>,
-    pub(super) roughness: f64,
-    pub(super) metalness: f64,
-}
 
 /// The maps of roughness and metalness read so far.
 #[derive(Debug, Default)]

@@ -10,7 +10,7 @@ use super::gltf::Writer;
 use super::gltf_buffer::single;
 use super::gltf_roughness::is_rough_metal;
 use super::gltf_texture::{Cover, Infos, Textures};
-use super::look::Look;
+use super::part_look::Look;
 use marraztu_core::base::{Shared, color};
 use marraztu_core::scene::{MapKind, Texture};
 

@@ -12,37 +12,11 @@ use gltf_json::{Index, image, texture};
 
 use super::file_bytes::Encoded;
 use super::gltf::Writer;
-use super::gltf_buffer::single;
-use super::gltf_opacity::{Merging, white_with};
-use super::look::Look;
+use super::gltf_opacity::{Layout, Merging, white_with};
+use super::part_look::Look;
 use super::pictures::Pictures;
 use marraztu_core::base::Shared;
 use marraztu_core::scene::{MapKind, Texture, Wrap};
-
-/// The offset and scale of a texture on a surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Layout {
-    pub(super) offset: [f64; 2],
-    pub(super) scale: [f64; 2],
-}
-
-impl Default for Layout {
-    fn default() -> Self {
-        Self { offset: [0.0; 2], scale: [1.0; 2] }
-    }
-}
-
-impl Layout {
-    pub(super) fn of(texture: &Texture) -> Self {
-        Self { offset: texture.offset, scale: texture.scale }
-    }
-
-    /// Returns texture coordinates with (0, 0) at the upper left.
-    pub(super) fn laid(&self, [u, v]: [f32; 2]) -> [f32; 2] {
-        let along = |x: f32, i: usize| f64::from(x) * self.scale[i] + self.offset[i];
-        [single(along(u, 0)), single(1.0 - along(v, 1))]
-    }
-}
 
 /// Returns the layouts of a look's textures, in the order of a vertex's texture coordinates.
 pub(super) fn layouts(look: &Look) -> Vec<Layout> {

@@ -15,6 +15,7 @@ mod gltf_texture;
 mod look;
 mod names;
 mod obj;
+mod part_look;
 mod pictures;
 mod placeholders;
 
@@ -23,24 +24,9 @@ use std::path::{Path, PathBuf};
 use serde::{Deserialize, Serialize};
 
 use self::companion::check_companion;
-use super::obj::lines::unmarked;
 use super::replace::{SaveError, Worth, check_target, replace};
 use super::sources::Sources;
 use marraztu_core::scene::{Object, Scene, View};
-
-/// The first line of exported text files. A companion file that begins with it was written by this
-/// program and may be replaced.
-pub(crate) const SIGNATURE: &str = "# exported by Marraztu\n";
-
-/// Returns whether a text begins with the signature. Editors and Git may have changed its line ends
-/// and added a byte-order mark.
-pub(crate) fn is_signed(text: &[u8]) -> bool {
-    let first = unmarked(text).split(|byte| matches!(byte, b'\n' | b'\r')).next();
-    first == Some(SIGNATURE.trim_end().as_bytes())
-}
-
-/// The comment of exported textures, which may be replaced likewise.
-const MARK: &str = "exported by Marraztu";
 
 /// The extensions of the formats, without the dot.
 pub const EXPORT_ENDINGS: [&str; 3] = ["obj", "gltf", "glb"];
@@ -165,15 +151,4 @@ fn hidden(scene: &Scene) -> Vec<String> {
     let counts = [("objects", hidden.len()), ("parts", parts.sum())];
     let left_out = counts.into_iter().filter(|(_, count)| *count > 0);
     left_out.map(|(what, count)| format!("hidden {what} are left out: {count}")).collect()
-}
-
-/// Percent-encodes a name for a URI: all but letters, digits, `-`, `_` and `.`.
-fn escaped(name: &str) -> String {
-    let byte = |byte: u8| match byte {
-        b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'_' | b'.' => {
-            char::from(byte).to_string()
-        }
-        _ => format!("%{byte:02X}"),
-    };
-    name.bytes().map(byte).collect()
 }

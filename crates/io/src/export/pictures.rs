@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use rayon::prelude::*;
 
-use super::MARK;
 use super::file_bytes::{self, Encoded};
+use crate::mark::MARK;
 use crate::picture::png_with_comment;
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::Picture;

@@ -4,8 +4,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
 
+use super::discarded;
 use super::origin::origin;
-use super::{Lock, OwnFolders, Slot, discarded, list_lock};
+use super::slots::{Lock, OwnFolders, Slot, list_lock};
 use crate::error::reason;
 use crate::fingerprint::Fingerprint;
 

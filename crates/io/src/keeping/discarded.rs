@@ -6,9 +6,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-use super::OwnFolders;
 use super::origin::origin;
+use super::slots::OwnFolders;
 use crate::fingerprint::Fingerprint;
+use crate::scene_file::SCENE_ENDING;
 
 /// The prefix of the names of discarded work.
 const PREFIX: &str = "discarded-";
@@ -48,7 +49,7 @@ impl Discarded {
 
     fn at(path: PathBuf) -> Option<Self> {
         let name = path.file_name()?.to_str()?;
-        let name = name.strip_prefix(PREFIX)?.strip_suffix(crate::SCENE_ENDING)?;
+        let name = name.strip_prefix(PREFIX)?.strip_suffix(SCENE_ENDING)?;
         let seconds = name.split('-').next()?.parse().ok()?;
         let at = UNIX_EPOCH.checked_add(Duration::from_secs(seconds))?;
         let written = fs::metadata(&path).and_then(|data| data.modified()).unwrap_or(at);

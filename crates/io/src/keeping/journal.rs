@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 use super::abandoned::{Abandoned, PREFIX};
 use super::origin::head;
-use super::{Lock, OwnFolders, Slot, list_lock, made};
+use super::slots::{Lock, OwnFolders, Slot, list_lock, made};
 use crate::error::reason;
 use crate::fingerprint::Fingerprint;
 use crate::part::own_process;

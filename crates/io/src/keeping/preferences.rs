@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
-use super::{Lock, OwnFolders, made};
+use super::slots::{Lock, OwnFolders, made};
 use crate::error::reason;
 use crate::replace::{Worth, replace};
 use crate::window_state::Panels;

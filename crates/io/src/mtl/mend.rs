@@ -3,7 +3,7 @@
 //! Exporters write Ka as a copy of Kd or as white, which lights everything uniformly; Ks for dull
 //! surfaces; or no Kd next to a texture. Each rule has its own finding.
 
-use super::Statements;
+use super::statements::Statements;
 use crate::findings::{BYTES_ABOVE, FindingKind, Findings};
 use marraztu_core::base::Shared;
 use marraztu_core::scene::{FileMaterial, MapKind, Material, SurfaceMaps, Texture};

@@ -8,27 +8,27 @@ mod map;
 mod mend;
 mod normal_map;
 mod statement;
+mod statements;
 mod undrawn;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-use self::map::{Map, map};
+use self::map::Map;
 use self::mend::scale_bytes;
 use self::normal_map::shows_normals;
+pub(super) use self::statements::map_names;
+use self::statements::{Statements, read_statements};
 use super::error::{LFS_POINTER, LoadError, short_name, shown};
-use super::export::is_signed;
 use super::findings::{Finding, FindingKind, Findings, joined};
 use super::locate::Locator;
-use super::obj::lines::{Line, Lines, Oddity, decode, excerpt, words};
 use super::progress::Progress;
 use super::read::{MOST_WORDS, is_binary, is_utf_16, read, utf_8};
 use super::texture::{Pictures, Read};
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::Picture;
 use marraztu_core::scene::{
-    BumpMaps, FileMaterial, MapKind, NONE, SurfaceMap, SurfaceMaps, Texture, Undrawn, UndrawnMap,
-    Wrap,
+    BumpMaps, FileMaterial, MapKind, NONE, SurfaceMap, SurfaceMaps, Texture, UndrawnMap, Wrap,
 };
 
 /// The most texels of all textures of a model: 2 GB.
@@ -70,31 +70,6 @@ struct Origin {
     line: u32,
     /// Whether this program has written the file.
     is_own: bool,
-}
-
-/// The statements of a material.
-#[derive(Debug, Default)]
-struct Statements {
-    name: String,
-    line: u32,
-    /// Whether this program has written the file: its values are meant as they are.
-    is_own: bool,
-    ambient: Option<[f64; 3]>,
-    diffuse: Option<[f64; 3]>,
-    specular: Option<[f64; 3]>,
-    exponent: Option<f64>,
-    emission: Option<[f64; 3]>,
-    opacity: Option<f64>,
-    transparency: Option<f64>,
-    illumination: Option<f64>,
-    /// `bsdf pbr`: Ks holds occlusion, roughness and metalness.
-    is_packed: bool,
-    map: Option<(u32, Map)>,
-    /// The other maps.
-    maps: BTreeMap<MapKind, (u32, Map)>,
-    undrawn: Undrawn,
-    /// The maps that are not drawn, with their keywords.
-    undrawn_maps: Vec<(String, Map)>,
 }
 
 impl<'a> Library<'a> {
@@ -348,139 +323,10 @@ impl<'a> Library<'a> {
     }
 }
 
-fn read_statements(bytes: &[u8], findings: &mut Findings) -> Vec<Statements> {
-    let mut list: Vec<Statements> = Vec::new();
-    let is_own = is_signed(bytes);
-    for line in Lines::new(bytes) {
-        let (keyword, _) = line.statement();
-        if line.oddity == Some(Oddity::NotContinued) {
-            findings.add(FindingKind::NotContinued, &excerpt(keyword), Some(line.number));
-        }
-        if keyword == b"newmtl" {
-            let (name, line) = (line.name(), line.number);
-            list.push(Statements { name, line, is_own, ..Statements::default() });
-            continue;
-        }
-        if keyword.starts_with(b"#") {
-            continue;
-        }
-        // Statements belong to the last `newmtl`.
-        match list.last_mut() {
-            Some(statements) => statements.read(&line, findings),
-            None => findings.add(FindingKind::MtlStray, &decode(keyword), Some(line.number)),
-        }
-    }
-    list
-}
-
-impl Statements {
-    fn read(&mut self, line: &Line<'_>, findings: &mut Findings) {
-        let (keyword, rest) = line.statement();
-        let plain = keyword.to_ascii_lowercase();
-        let mut note = |kind| findings.add(kind, &decode(keyword), Some(line.number));
-        let mut is_read = true;
-        match &plain[..] {
-            b"ka" => is_read = set(&mut self.ambient, statement::color(rest)),
-            b"kd" => is_read = set(&mut self.diffuse, statement::color(rest)),
-            b"ks" => is_read = set(&mut self.specular, statement::color(rest)),
-            b"ke" => is_read = set(&mut self.emission, statement::color(rest)),
-            b"ns" => is_read = set(&mut self.exponent, statement::scalar(rest)),
-            b"d" => {
-                // `d -halo x` fades towards the centre; only x is used.
-                let rest = rest.strip_prefix(b"-halo").unwrap_or(rest);
-                is_read = set(&mut self.opacity, statement::scalar(rest));
-            }
-            b"tr" => is_read = set(&mut self.transparency, statement::scalar(rest)),
-            b"illum" => {
-                is_read = set(&mut self.illumination, statement::scalar(rest));
-                self.keep_model();
-            }
-            b"bsdf" if words(rest).eq([b"pbr"]) => self.is_packed = true,
-            b"map_kd" => match map(rest) {
-                Some(map) => self.map = Some((line.number, map)),
-                None => note(FindingKind::MapUnnamed),
-            },
-            b"map_aat" => {}
-            _ if let Some(kind) = kind_of(&plain) => match map(rest) {
-                Some(map) => _ = self.maps.insert(kind, (line.number, map)),
-                None => note(FindingKind::MapUnnamed),
-            },
-            _ if plain.starts_with(b"map_") || matches!(&*plain, b"disp" | b"decal" | b"refl") => {
-                note(FindingKind::MapUnused);
-                self.undrawn_maps.extend(map(rest).map(|map| (decode(keyword), map)));
-            }
-            _ if self.keep_undrawn(keyword, rest) => {}
-            _ => note(FindingKind::Unknown),
-        }
-        if !is_read {
-            note(FindingKind::MtlNumber);
-        }
-    }
-
-    /// Removes an opacity map with the picture of the texture, if that has no alpha. Its alpha is
-    /// meant, not the brightness of its colours.
-    fn settle_opacity(
-        &self,
-        texture: Option<&Texture>,
-        maps: &mut SurfaceMaps,
-        findings: &mut Findings,
-    ) {
-        let (Some(texture), Some(map)) = (texture, maps.get(&MapKind::Opacity)) else { return };
-        let is_same = Shared::same(&texture.picture, &map.texture.picture);
-        if is_same && texture.picture.least_alpha() == 255 && !self.is_own {
-            maps.remove(&MapKind::Opacity);
-            findings.add(FindingKind::MapOpaque, &self.name, Some(self.line));
-        }
-    }
-
-    /// Removes the bump map if it is also the normal map. Some files, including our exports, name
-    /// it twice for readers that know only one of the statements.
-    fn keep_one_relief(&mut self) {
-        let name = |kind| self.maps.get(&kind).map(|(_, map): &(u32, Map)| &map.name);
-        if name(MapKind::Bump).is_some() && name(MapKind::Bump) == name(MapKind::Normal) {
-            self.maps.remove(&MapKind::Bump);
-        }
-    }
-}
-
-/// Returns the file names of all maps in an MTL file.
-pub(super) fn map_names(bytes: &[u8]) -> Vec<String> {
-    let of_line = |line: Line<'_>| {
-        let (keyword, rest) = line.statement();
-        let keyword = keyword.to_ascii_lowercase();
-        let is_map = keyword == b"map_kd" || kind_of(&keyword).is_some();
-        if is_map { map(rest).map(|map| map.name) } else { None }
-    };
-    Lines::new(bytes).filter_map(of_line).collect()
-}
-
-/// Returns the kind of a map, by its keyword in lower case.
-fn kind_of(keyword: &[u8]) -> Option<MapKind> {
-    match keyword {
-        b"map_ka" => Some(MapKind::Ambient),
-        b"map_ks" => Some(MapKind::Specular),
-        b"map_ns" => Some(MapKind::Exponent),
-        b"map_d" => Some(MapKind::Opacity),
-        b"map_ke" => Some(MapKind::Emission),
-        b"bump" | b"map_bump" => Some(MapKind::Bump),
-        b"norm" | b"map_norm" | b"map_kn" => Some(MapKind::Normal),
-        _ => None,
-    }
-}
-
-/// Sets a value if it was parsed; returns whether it was.
-fn set<T>(target: &mut Option<T>, value: Option<T>) -> bool {
-    let read = value.is_some();
-    if read {
-        *target = value;
-    }
-    read
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::export::SIGNATURE;
+    use crate::mark::SIGNATURE;
     use marraztu_core::scene::Material;
 
     fn read(text: &str) -> (FileMaterial, Vec<FindingKind>) {

@@ -2,7 +2,8 @@
 //! programs.
 
 use super::map::Map;
-use super::{Statements, statement};
+use super::statement;
+use super::statements::Statements;
 
 /// Refraction, filters, sharpness, and physically based shading.
 const KEYWORDS: [&str; 11] =

@@ -12,20 +12,18 @@ use rayon::prelude::*;
 
 use super::chunks::{Chunks, Sizes};
 use super::faces::{Faces, INHERITED};
+use super::foreign::{EMPTY, no_obj};
 use super::lines::{Lines, unmarked};
 use super::parts::{NamedPart, Parts};
 use super::piece::{Counts, Piece, Stop};
 use super::rows::{NO_COLOR, Rows};
 use super::sound::{Before, SoundPiece, Totals};
-use super::{EMPTY, no_obj};
 use crate::error::LoadError;
 use crate::findings::{BYTES_ABOVE, FindingKind, Findings};
 use crate::progress::{Cancelled, Progress};
+use crate::read::MOST_MODEL_BYTES;
 use marraztu_core::base::color::Color;
 use marraztu_core::base::lists::concatenated;
-
-/// The most bytes in a text.
-pub(crate) const MOST_BYTES: usize = if usize::BITS > 32 { 4 << 30 } else { 1 << 30 };
 
 /// The most bytes in a statement.
 const MOST_STATEMENT: usize = 256 << 20;
@@ -69,7 +67,7 @@ pub(super) fn content(
 ) -> Result<Content, LoadError> {
     // Several chunks per thread balance the load.
     let chunk = (size / (4 * rayon::current_num_threads())).clamp(CHUNK[0], CHUNK[1]);
-    let sizes = Sizes { chunk, statement: MOST_STATEMENT, text: MOST_BYTES };
+    let sizes = Sizes { chunk, statement: MOST_STATEMENT, text: MOST_MODEL_BYTES };
     let reading = Reading {
         chunks: Mutex::new(Chunks::new(text, file, sizes)),
         file,

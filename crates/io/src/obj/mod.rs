@@ -16,6 +16,7 @@
 mod chunks;
 mod corners;
 mod faces;
+mod foreign;
 mod join;
 pub(super) mod lines;
 mod parts;
@@ -32,67 +33,37 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
-pub(crate) use self::join::MOST_BYTES;
-
 use self::join::Content;
 use self::parts::NamedPart;
 use self::sound::FaceRuns;
-use super::error::{LFS_POINTER, LoadError, short_name, shown};
-use super::findings::{Finding, FindingKind, Findings, joined};
+use super::error::{LoadError, short_name, shown};
+use super::findings::{FindingKind, Findings, joined};
+use super::loaded::{Loaded, place, placement};
 use super::locate::of_model;
 use super::mtl::Library;
-use super::packed::{Unpacked, model_name, unpacked, unpacked_name};
+use super::packed::{Unpacked, model_name, unpacked_name};
 use super::progress::Progress;
-use super::read;
-use super::stl::{self, is_stl};
+use super::read::{self, MOST_MODEL_BYTES};
 use super::texture::{Pictures, texture_endings};
 use marraztu_core::scene::{
-    Corner, CornerLists, FileMaterial, LoadOptions, Mesh, MeshSource, Model, Part, Scale,
-    Smoothing, Texture, UpAxis, Winding, dvec3, newell, split_positions,
+    Corner, CornerLists, FileMaterial, LoadOptions, Mesh, MeshSource, Model, Part, Smoothing,
+    Texture, Winding, dvec3, newell, split_positions,
 };
-
-/// The error for a file without content.
-const EMPTY: &str = "the file is empty";
 
 /// The most distinct `mtllib` statements that are followed.
 const MOST_LIBRARIES: usize = 1000;
 
-/// A model with the findings from its files.
-#[derive(Debug)]
-pub struct Loaded {
-    /// The model.
-    pub model: Model,
-    /// Everything that was repaired, left out or odd.
-    pub findings: Vec<Finding>,
-}
-
-/// Loads an OBJ file with its MTL files and textures, or an STL file. A file with the extension
-/// `.gz` is unpacked.
-///
-/// # Errors
-/// If the file cannot be read, is not such a file, has an unreadable number, or has only unusable
-/// faces; and if `progress` is cancelled.
-pub fn load(path: &Path, options: &LoadOptions, progress: &Progress) -> Result<Loaded, LoadError> {
-    load_with(path, options, &mut Pictures::default(), progress)
-}
-
-/// Works like [`load`], but reuses pictures that are already in `pictures`.
-pub(super) fn load_with(
+/// Loads an OBJ file with its MTL files and textures. Pictures that are already in `pictures` are
+/// reused. Fails if the file cannot be read, is no such file, or has only unusable faces; and if
+/// `progress` is cancelled.
+pub(super) fn load(
     path: &Path,
     options: &LoadOptions,
     pictures: &mut Pictures,
     progress: &Progress,
 ) -> Result<Loaded, LoadError> {
     let file = shown(path);
-    // An absolute path stays valid when the current folder changes.
-    let source = Some(std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned()));
-    if is_stl(path) {
-        let bytes = unpacked(path, &file, &progress.part(0.0, 0.2))?;
-        let Loaded { model, findings } =
-            stl::parse(&bytes, &file, options, &progress.part(0.2, 1.0))?;
-        return Ok(Loaded { model: Model { source, ..model }, findings });
-    }
-    let (text, size) = read::open(path, MOST_BYTES)?;
+    let (text, size) = read::open(path, MOST_MODEL_BYTES)?;
     let mut findings = Findings::new(&file);
     let part = progress.part(0.0, 0.6);
     let content = match unpacked_name(&file) {
@@ -104,26 +75,18 @@ pub(super) fn load_with(
     let mut library = Library::new(pictures, options.bumps);
     let missing = read_libraries(&mut library, &content, folder, &mut findings);
     own_library(&mut library, &content, path, missing, &mut findings);
-    let progress = progress.part(0.6, 1.0);
-    let Loaded { model, findings } = model(content, &file, library, options, findings, &progress)?;
-    Ok(Loaded { model: Model { source, ..model }, findings })
+    model(content, &file, library, options, findings, &progress.part(0.6, 1.0))
 }
 
-/// Parses the text of an OBJ file, or an STL file. MTL files are searched for in `folder`, if
-/// given.
-///
-/// # Errors
-/// The same as [`load`].
-pub fn parse(
+/// Parses the text of an OBJ file. MTL files are searched for in `folder`, if given. Fails like
+/// [`load`].
+pub(super) fn parse(
     bytes: &[u8],
     file: &str,
     folder: Option<&Path>,
     options: &LoadOptions,
     progress: &Progress,
 ) -> Result<Loaded, LoadError> {
-    if stl::has_stl_content(bytes, bytes.len()) {
-        return stl::parse(bytes, file, options, progress);
-    }
     let mut findings = Findings::new(file);
     let content = content(bytes, bytes.len(), file, &mut findings, &progress.part(0.0, 0.6))?;
     let mut pictures = Pictures::default();
@@ -199,38 +162,6 @@ fn model(
     let model = Model { companions, options: *options, materials, edge_color, ..model };
     let findings = findings.into_list().into_iter().chain(of_materials).collect();
     Ok(Loaded { model, findings: joined(findings) })
-}
-
-/// Returns the reason why a text with these first bytes cannot be an OBJ file. `whole` means that
-/// they are the whole text.
-fn no_obj(bytes: &[u8], whole: bool) -> Option<String> {
-    // Signatures of formats that users confuse with OBJ, for a helpful message.
-    let known = [
-        (&b"glTF"[..], "a glTF file"),
-        (b"PK\x03\x04", "a ZIP archive; unpack it first"),
-        (b"\x1F\x8B", "a gzip archive; unpack it first"),
-        (b"Kaydara FBX", "an FBX file"),
-        (b"BLENDER", "a Blender file; export it as OBJ"),
-        (b"\x89PNG", "a PNG picture"),
-        (b"\xFF\xD8\xFF", "a JPEG picture"),
-        (b"ply\n", "a PLY file"),
-        (b"ply\r\n", "a PLY file"),
-        (b"solid ", "an STL file"),
-        (b"OFF\n", "an OFF file"),
-    ];
-    if whole && bytes.trim_ascii().is_empty() {
-        return Some(EMPTY.to_owned());
-    }
-    if read::is_lfs_pointer(bytes) {
-        return Some(LFS_POINTER.to_owned());
-    }
-    for (begin, what) in known {
-        if bytes.starts_with(begin) {
-            return Some(format!("this is not an OBJ file but {what}"));
-        }
-    }
-    read::is_binary(&bytes[..bytes.len().min(4096)])
-        .then(|| "this is not an OBJ file: it is not text".into())
 }
 
 /// Rejects a file if all of its faces, or all of its vertices, are unusable.
@@ -405,20 +336,6 @@ fn source(
         smoothing,
     };
     finite.then_some((source, corners))
-}
-
-/// Returns the options that change positions and normals.
-const fn placement(options: &LoadOptions) -> (UpAxis, Scale, Winding) {
-    (options.up, options.scale, options.winding)
-}
-
-/// Rotates and scales the positions and normals of a file as requested.
-pub(super) fn place(positions: &mut [[f64; 3]], normals: &mut [[f32; 3]], options: &LoadOptions) {
-    let LoadOptions { up, scale, .. } = options;
-    let turned = options.winding == Winding::Turned;
-    positions.par_iter_mut().for_each(|row| *row = up.upright(*row).map(|x| x * scale.get()));
-    let normal = |row: [f32; 3]| up.upright(row.map(|x| if turned { -x } else { x }));
-    normals.par_iter_mut().for_each(|row| *row = normal(*row));
 }
 
 /// Notes polygons with triangles of opposite orientation: they cross themselves, or were too large

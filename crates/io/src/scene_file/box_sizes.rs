@@ -8,8 +8,8 @@ use std::collections::BTreeMap;
 
 use glam::{DMat4, DVec3};
 
-use super::files::{ModelKey, key};
 use super::format::{FileModel, FileObject, FileScene};
+use super::model_key::{ModelKey, key};
 use marraztu_core::scene::{Model, Shape};
 
 /// The side of a box as a fraction of the median extent.

@@ -4,35 +4,20 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 use super::box_sizes::BoxSizes;
+use super::error::SceneFileError;
 use super::format::{FileModel, FileScene, FileTexture};
+use super::model_key::{ModelKey, key};
 use super::save::{file_model, file_texture};
-use super::{SceneFileError, open, paths};
+use super::{open, paths};
 use crate::error::LoadError;
-use crate::examples;
 use crate::findings::{Finding, FindingKind, Findings};
-use crate::obj::load_with;
+use crate::load::load_with;
 use crate::progress::Progress;
 use crate::texture::Pictures;
+use crate::{assets, examples};
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
-use marraztu_core::scene::{
-    BumpMaps, Crease, LoadOptions, Model, Scale, Scene, Shape, Texture, UpAxis, Winding,
-};
-
-/// The identity of a model in a scene file: its name or path, the size of a shape, and the load
-/// options of a file. The crease angle comes last, so files that differ only in it are neighbours.
-pub(super) type ModelKey = (String, Option<u64>, Option<(UpAxis, u64, Winding, BumpMaps, u64)>);
-
-pub(super) fn key(model: &FileModel) -> ModelKey {
-    match model {
-        FileModel::Own(name) => (name.clone(), None, None),
-        FileModel::Shape { name, size } => (name.clone(), Some(size.to_bits()), None),
-        FileModel::File { path, up, scale, winding, crease, bumps } => {
-            let options = (*up, scale.to_bits(), *winding, *bumps, crease.to_bits());
-            (path.clone(), None, Some(options))
-        }
-    }
-}
+use marraztu_core::scene::{Crease, LoadOptions, Model, Scale, Scene, Shape, Texture};
 
 /// The models and textures of an open scene, which can be reused.
 #[derive(Debug, Default)]
@@ -138,7 +123,7 @@ impl Files {
             .filter(|path| !self.textures.contains_key(*path))
             .collect();
         for path in paths {
-            let texture = match crate::own_texture(path) {
+            let texture = match assets::own_texture(path) {
                 Some(own) => own,
                 None => self.load_texture(path)?,
             };
@@ -187,7 +172,7 @@ impl Files {
     ) -> Result<Option<Shared<Model>>, SceneFileError> {
         let (path, options) = match model {
             FileModel::Own(own) => {
-                let own_model = crate::own_model(own);
+                let own_model = assets::own_model(own);
                 return own_model.map(Some).ok_or_else(|| SceneFileError::File {
                     file: name.to_owned(),
                     reason: format!("there is no built-in model \"{own}\""),
@@ -281,7 +266,7 @@ pub(super) struct StandIns;
 
 impl open::Needs for StandIns {
     fn model(&self, _: &FileModel) -> Shared<Model> {
-        crate::cam_model()
+        assets::cam_model()
     }
 
     fn texture(&self, texture: &FileTexture) -> Shared<Texture> {

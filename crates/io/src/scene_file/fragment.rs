@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::error::SceneFileError;
 use super::files::{Files, Known};
 use super::format::{
     FileCamera, FileLocked, FileObject, FileScene, Head, VERSION, cam, written_bare,
@@ -15,7 +16,7 @@ use super::format::{
 use super::light::{FileLight, file_light};
 use super::save::{file_camera, file_object};
 use super::view::FileView;
-use super::{SceneFileError, open, words};
+use super::{open, words};
 use crate::findings::Findings;
 use crate::progress::Progress;
 use marraztu_core::accuracy::Settings;

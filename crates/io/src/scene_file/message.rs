@@ -8,9 +8,10 @@ use std::path::{Path, PathBuf};
 
 use serde::{Deserialize, Serialize};
 
+use super::error::SceneFileError;
 use super::files::{Files, Known};
 use super::format::FileScene;
-use super::{SceneFileError, open, save};
+use super::{open, save};
 use crate::findings::Findings;
 use crate::progress::Progress;
 use crate::window_state::WindowState;

@@ -5,6 +5,7 @@
 //! and settings are saved with the scene; the undo stack is not.
 
 mod box_sizes;
+mod error;
 mod fields;
 mod files;
 mod format;
@@ -12,6 +13,7 @@ mod former;
 mod fragment;
 mod light;
 mod message;
+mod model_key;
 mod open;
 pub(crate) mod paths;
 mod save;
@@ -20,19 +22,19 @@ mod words;
 
 use std::path::{Path, PathBuf};
 
+pub use self::error::SceneFileError;
 pub use self::files::Known;
 pub use self::fragment::{Fragment, items_of_text, items_to_text, material_to_text};
 pub use self::message::{scene_of_message, scene_to_message};
 
 use self::files::{Files, StandIns};
 use self::format::{FileScene, Head, VERSION};
-use super::error::{LoadError, shown};
+use super::error::shown;
 use super::examples;
 use super::findings::{Finding, Findings, joined};
 use super::fingerprint::Fingerprint;
-use super::obj::MOST_BYTES;
 use super::progress::Progress;
-use super::read::{read, utf_8};
+use super::read::{MOST_MODEL_BYTES, read, utf_8};
 use super::replace::{SaveError, Worth, replace};
 use super::sources::Sources;
 use super::window_state::WindowState;
@@ -57,34 +59,6 @@ pub struct Opened {
     pub findings: Vec<Finding>,
     /// The content of the file.
     pub content: Fingerprint,
-}
-
-/// The reason why a scene file cannot be opened. A failed open changes nothing.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum SceneFileError {
-    /// The file cannot be read, or its scene is invalid.
-    #[error("{file}: {reason}")]
-    File {
-        /// The file's path, as the user gave it.
-        file: String,
-        /// The reason.
-        reason: String,
-    },
-    /// A line of the file is invalid.
-    #[error("{file}:{line}:{column}: {reason}")]
-    Line {
-        /// The file's path, as the user gave it.
-        file: String,
-        /// The line, counted from 1.
-        line: usize,
-        /// The column, in characters counted from 1.
-        column: usize,
-        /// The reason.
-        reason: String,
-    },
-    /// The scene file cannot be read, or opening was cancelled.
-    #[error(transparent)]
-    Model(#[from] LoadError),
 }
 
 /// Saves a scene; the previous file is kept, with `~` appended to its name.
@@ -137,7 +111,7 @@ pub(crate) fn text_with_window(
     let file = file.map_err(fail)?;
     let config = ron::ser::PrettyConfig::new().new_line("\n");
     let text = ron::ser::to_string_pretty(&file, config).map_err(|e| fail(e.to_string()))?;
-    if text.len() >= MOST_BYTES {
+    if text.len() >= MOST_MODEL_BYTES {
         return Err(fail("it is too large".to_owned()));
     }
     // Read the text back: a number that is not finite could be written, but not read.
@@ -158,7 +132,7 @@ pub fn open(path: &Path, progress: &Progress) -> Result<Opened, SceneFileError> 
         let folder = path.parent().unwrap_or(path).to_owned();
         return open_text(text, &name, folder, progress);
     }
-    let bytes = read(path, MOST_BYTES, &Progress::new())?;
+    let bytes = read(path, MOST_MODEL_BYTES, &Progress::new())?;
     let content = Fingerprint::of(&bytes);
     let text = String::from_utf8(utf_8(bytes)).map_err(|_bytes| SceneFileError::File {
         file: name.clone(),

@@ -12,8 +12,9 @@ use super::format::{
 use super::light::file_light;
 use super::paths::relative;
 use super::view::FileView;
+use crate::assets::{own_model, own_texture};
+use crate::examples::is_example;
 use crate::window_state::WindowState;
-use crate::{is_example, own_texture};
 use marraztu_core::accuracy::Settings;
 use marraztu_core::scene::{
     Camera, CameraMode, LoadOptions, Model, Object, Pose, Scene, Shape, Texture, View,
@@ -51,7 +52,7 @@ pub(super) fn file_model(model: &Model, folder: &Path) -> Result<FileModel, Stri
         if let Some(shape) = Shape::of(model).filter(|_| size != 1.0) {
             return Ok(FileModel::Shape { name: shape.name().to_owned(), size });
         }
-        return if crate::own_model(name).is_some() {
+        return if own_model(name).is_some() {
             Ok(FileModel::Own(name.clone()))
         } else {
             Err(format!("the model \"{name}\" was not loaded from a file"))

@@ -23,7 +23,7 @@ use self::colors::colors;
 use self::solids::{PIECE, Solids};
 use super::error::LoadError;
 use super::findings::{FindingKind, Findings};
-use super::obj::Loaded;
+use super::loaded::Loaded;
 use super::obj::lines::unmarked;
 use super::packed::unpacked_name;
 use super::progress::Progress;

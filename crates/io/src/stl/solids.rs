@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::colors::Rgb;
 use crate::error::LoadError;
 use crate::findings::{FindingKind, Findings, joined};
-use crate::obj::{Loaded, place};
+use crate::loaded::{Loaded, place};
 use crate::packed::model_name;
 use crate::progress::{Cancelled, Progress};
 use marraztu_core::scene::{

@@ -4,10 +4,12 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 
 use crate::error::short_name;
+use crate::export::Content;
 use crate::export::file_bytes::Encoded;
-use crate::export::look::{Look, Looks};
+use crate::export::look::Looks;
+use crate::export::part_look::Look;
 use crate::export::pictures::Pictures;
-use crate::export::{Content, SIGNATURE};
+use crate::mark::SIGNATURE;
 use marraztu_core::scene::{MapKind, Texture, Wrap};
 
 /// Writes the textures and the MTL file. Their names begin with `stem`.
