@@ -11,8 +11,9 @@ use rayon::prelude::*;
 
 use super::bins::Bins;
 use super::edges;
-use super::inputs::{Inputs, Start, number};
+use super::inputs::{Inputs, Start};
 use super::lines::LineNumber;
+use super::numbers::number;
 use super::parts::{Parts, share_out};
 use super::rule::{Rule as _, with_rule};
 use super::vertex_variants;

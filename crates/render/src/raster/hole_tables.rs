@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 
-use super::inputs::number;
+use super::numbers::number;
 use crate::frame::FramePlan;
 use crate::frame::draw::{Draw, Pipeline, Shaded};
 use crate::texture::opacity::{Holes, Opacity, between};

@@ -4,6 +4,7 @@ use std::sync::atomic::AtomicU8;
 
 use super::edges::DrawnNormal;
 use super::hole_tables::HoleTables;
+use super::numbers::number;
 use super::vertices::Vertices;
 use crate::frame::FramePlan;
 use crate::frame::draw::Draw;
@@ -67,9 +68,4 @@ impl Inputs {
         let count = if lines.edges { model.mesh.polygon_count() } else { 0 };
         &self.outlines[self.starts[draw].outline..][..count]
     }
-}
-
-/// Converts an index to a 32-bit number of the frame or of a draw.
-pub(crate) fn number(i: usize) -> u32 {
-    u32::try_from(i).expect("fewer than 2^32 primitives")
 }

@@ -18,11 +18,12 @@ use fearless_simd::{Level, Simd};
 
 use super::beyond;
 use super::bins::LargeTriangle;
+use super::block_triangle::BlockTriangle;
 use super::depth_format::{Any, Format as _, depths_between};
 use super::edges_in_floats::{FloatTriangle, in_pixels};
 use super::entries::word;
 use super::geometry::ScreenGeometry;
-use super::large::{BlockTriangle, Large, Touched};
+use super::large::{Large, Touched};
 use super::scan_lines::ScanLines;
 use crate::ancestors::points;
 use crate::frame::FramePlan;

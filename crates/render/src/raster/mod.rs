@@ -14,6 +14,7 @@
 pub(crate) mod alpha_test;
 mod beyond;
 pub(crate) mod bins;
+mod block_triangle;
 mod covered;
 mod culling;
 pub(crate) mod depth_format;
@@ -29,6 +30,7 @@ mod large;
 pub(crate) mod layers;
 pub(crate) mod lines;
 mod medium;
+mod numbers;
 mod parts;
 mod queue;
 mod rule;

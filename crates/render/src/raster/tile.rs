@@ -23,13 +23,12 @@
 use crate::simd::dispatch;
 use fearless_simd::{Level, Simd};
 
-use self::cutouts::Cutouts;
-use self::small::SmallTriangles;
+use self::scratch::{Cutouts, SmallTriangles};
 use super::bins::Bins;
+use super::block_triangle::BlockTriangle;
 use super::depth_format::{Any, Format as _, depths_between, with_format};
 use super::entries::{FOUR, word};
 use super::geometry::ScreenGeometry;
-use super::large::BlockTriangle;
 use super::lines;
 use super::visibility_buffer::{Plane, depths_of};
 use crate::frame::FramePlan;
@@ -429,6 +428,7 @@ fn plane_of(entries: &[u64], count: usize, sample: usize) -> Plane {
 mod cutout_fragments;
 mod cutouts;
 mod other_rules;
+mod scratch;
 mod small;
 #[cfg(test)]
 mod tests;

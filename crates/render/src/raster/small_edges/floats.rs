@@ -6,7 +6,8 @@ use fearless_simd::{
     mask32x16,
 };
 
-use super::{Boxes, Corners, Edges, LinearDepths, Places, UsualEdges};
+use super::edges::{Boxes, Corners, Edges, LinearDepths, Places};
+use super::usual::UsualEdges;
 use crate::raster::beyond::reach;
 use crate::screen::coverage::SUBPIXELS;
 use crate::simd::gather::of_lanes;

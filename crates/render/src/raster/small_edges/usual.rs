@@ -3,7 +3,7 @@
 
 use fearless_simd::{Select as _, Simd, SimdBase as _, SimdInt as _, f32x16, i32x16, mask32x16};
 
-use super::{Boxes, Corners, Edge, Edges, LinearDepths, Places};
+use super::edges::{Boxes, Corners, Edge, Edges, LinearDepths, Places};
 use crate::screen::coverage::SUBPIXELS;
 use crate::simd::gather::of_lanes;
 use marraztu_core::base::math::each;

@@ -6,7 +6,7 @@ use fearless_simd::{
     f32x16, f64x8, i32x16, mask32x16, u32x16,
 };
 
-use super::{Boxes, Corners, Edge, Edges, LinearDepths, Places};
+use super::edges::{Boxes, Corners, Edge, Edges, LinearDepths, Places};
 use crate::screen::coverage::{Grid, SUBPIXELS};
 use crate::simd::gather::{of_lanes, permute};
 use crate::simd::in_f64;

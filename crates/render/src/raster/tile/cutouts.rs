@@ -4,22 +4,17 @@ use fearless_simd::{Level, Simd};
 
 use super::Visibility;
 use super::cutout_fragments::{Fragments, List, MOST};
+use super::scratch::Cutouts;
 use crate::frame::FramePlan;
 use crate::raster::alpha_test::{AlphaSurface, AlphaTest, BlockHoles};
 use crate::raster::bins::LargeTriangle;
+use crate::raster::block_triangle::BlockTriangle;
 use crate::raster::depth_format::Any;
 use crate::raster::geometry::ScreenGeometry;
-use crate::raster::large::{BlockTriangle, Large, Touched};
+use crate::raster::large::{Large, Touched};
 use crate::screen::tiles::BLOCK_PIXELS;
 use crate::simd::Bits;
 use crate::texture::opacity::Holes;
-
-/// The data reused from one alpha-tested triangle of a tile to the next.
-#[derive(Debug, Default)]
-pub(super) struct Cutouts<'a> {
-    surface: Option<AlphaSurface<'a>>,
-    fragments: Fragments,
-}
 
 /// Classifies the pixels of a block by their holes, for all samples together.
 #[inline(always)]

@@ -5,12 +5,12 @@
 use fearless_simd::{Select as _, Simd, SimdBase as _, SimdMask as _, f64x4, mask32x16, u32x16};
 
 use super::Visibility;
+use super::scratch::SmallTriangles;
 use crate::raster::bins::Bins;
-use crate::raster::covered::Covered;
 use crate::raster::depth_format::{Format, with_format};
 use crate::raster::entries::{FOUR, put_samples};
 use crate::raster::hits::PACK;
-use crate::raster::queue::{Pack, Queue};
+use crate::raster::queue::Pack;
 use crate::raster::rule::{Rule, Usual};
 use crate::raster::small::SampledLanes;
 use crate::raster::small_edges::Edges;
@@ -18,14 +18,6 @@ use crate::raster::tile_queues::SIZES;
 use crate::raster::visibility_buffer::BACKGROUND;
 use crate::screen::sample_positions::MANY;
 use crate::screen::tiles::{BLOCK_PIXELS, PIXELS, TILE, lanes_place};
-
-/// The means to draw the small triangles of a tile.
-#[derive(Debug, Default)]
-pub(super) struct SmallTriangles {
-    covered: Covered,
-    /// The triangles left over from packs of fewer than sixteen.
-    rest: Queue,
-}
 
 /// The entries of sixteen pixels in four samples.
 #[repr(align(64))]

@@ -5,9 +5,10 @@ use fearless_simd::{Level, Simd};
 
 use super::Visibility;
 use crate::raster::bins::LargeTriangle;
+use crate::raster::block_triangle::BlockTriangle;
 use crate::raster::depth_format::{Format as _, with_format};
 use crate::raster::entries::word;
-use crate::raster::large::{BlockTriangle, Large, Touched};
+use crate::raster::large::{Large, Touched};
 use crate::raster::medium::{self, Medium};
 use crate::screen::coverage::{Grid, PixelBox, Snapped, Triangle};
 use crate::screen::tiles::BLOCK_PIXELS;
