@@ -20,10 +20,12 @@ use marraztu_core::base::image::Size;
 use marraztu_core::base::math::same_bits;
 use marraztu_core::scene::ItemId;
 
+mod change;
 mod compared;
 pub(crate) mod kept_shadows;
 mod shadow_reach;
 
+pub use change::Change;
 use compared::Compared;
 
 /// The tiles to be painted again, and the cause.
@@ -56,21 +58,6 @@ pub enum DamageCause {
     Order,
     /// These items changed. An empty list means that the picture stays the same.
     Items(Vec<(ItemId, Change)>),
-}
-
-/// The change in the drawing of an item.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Change {
-    /// The item was not drawn before.
-    Came,
-    /// The item is no longer drawn.
-    Went,
-    /// The item moved.
-    Moved,
-    /// Other polygons or lines of the item are drawn.
-    Shape,
-    /// The item's colours, texture or light changed.
-    Look,
 }
 
 impl Damage {

@@ -4,8 +4,9 @@
 //! darkened until its brightest surfaces are below white. One multiplication then gives the
 //! exposure that brings them just below it. Lines and marks are left out, because they are not lit.
 
-use super::renderer::surfaces_alone;
-use super::{Renderer, without_ground};
+use super::layers::surfaces_alone;
+use super::renderer::Renderer;
+use super::without_ground::without_ground;
 use marraztu_core::accuracy::{LightValues, Settings, Shot};
 use marraztu_core::base::color::linear;
 use marraztu_core::scene::View;

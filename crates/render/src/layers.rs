@@ -1,5 +1,5 @@
 //! The layers of a picture: for each pixel, the depth, the position, the normal and the ids of its
-//! surface. [`Renderer::layers`](crate::Renderer::layers) computes them.
+//! surface. [`Renderer::layers`](super::Renderer::layers) computes them.
 //!
 //! * A pixel shows the surface that its centre shows, for any number of samples. Layers do not
 //!   depend on [`Settings`](marraztu_core::accuracy::Settings); they equal the picture with the
@@ -13,7 +13,7 @@ use std::collections::{BTreeMap, HashMap, TryReserveError};
 
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::Size;
-use marraztu_core::scene::{MaterialChoice, ObjectId, PresetId, Scene};
+use marraztu_core::scene::{Fill, MaterialChoice, ObjectId, PresetId, Scene, View};
 
 /// A layer of a picture: one or more numbers for each pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -343,4 +343,16 @@ fn preset(id: PresetId) -> (MaterialKey, &'static str) {
 /// Returns the id of the entry at an index.
 pub(crate) fn id_at(index: usize) -> i32 {
     i32::try_from(index).map_or(i32::MAX, |index| index.saturating_add(1))
+}
+
+/// Returns the view with filled polygons alone: no lines and no marks.
+pub(crate) fn surfaces_alone(view: &View) -> View {
+    View {
+        fill: Fill::Filled,
+        edges_over_fill: false,
+        face_normals: false,
+        vertex_normals: false,
+        marks: false,
+        ..view.clone()
+    }
 }

@@ -79,7 +79,8 @@ pub use layers::{
 };
 pub use picture_camera::{AxesConvention, PictureCamera};
 pub use plan::{Effect, EffectState, EffectUse, explain_frame, plan_everything, plan_frame};
-pub use renderer::{Cancelled, Hit, Renderer};
+pub use renderer::picking::Hit;
+pub use renderer::{Cancelled, Renderer};
 pub use shading::pixel_color::{LightRay, Part, PixelColor, SurfacePoint, Term};
 pub use shadow::rays::RayCount;
 pub use timings::Timings;

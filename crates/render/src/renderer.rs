@@ -6,7 +6,7 @@
 
 mod enlarged;
 mod layers;
-mod picking;
+pub(crate) mod picking;
 mod supersampled;
 
 use std::ops::Range;
@@ -37,9 +37,6 @@ use crate::timings::{Laps, Timings};
 use crate::work_stealing::{own, together};
 use marraztu_core::accuracy::Arithmetic;
 use marraztu_core::base::image::{Picture, Size};
-
-pub(crate) use layers::surfaces_alone;
-pub use picking::Hit;
 
 /// Draws pictures, and reuses memory from one frame to the next.
 #[derive(Debug)]

@@ -11,7 +11,7 @@
 use super::frame::FramePlan;
 use super::frame::variants::Decoding;
 use super::plan::plan_frame;
-use super::{Cancelled, Renderer};
+use super::renderer::{Cancelled, Renderer};
 use marraztu_core::accuracy::Shot;
 use marraztu_core::base::color::{Color, byte, encoded, linear_factors};
 use marraztu_core::base::image::Picture;

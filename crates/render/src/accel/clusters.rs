@@ -11,7 +11,7 @@ use rayon::prelude::*;
 /// A triangle in draw order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawTriangle {
-    /// The vertices, as indices into [`DrawOrder::x`](crate::accel::DrawOrder::x).
+    /// The vertices, as indices into [`DrawOrder::x`](super::DrawOrder::x).
     pub vertices: [u32; 3],
     /// The triangle's index in [`Mesh::triangles`](marraztu_core::scene::Mesh::triangles).
     pub number: u32,
@@ -30,7 +30,7 @@ impl DrawTriangle {
 /// The number of triangles in a cluster; the last cluster may have fewer.
 pub const CLUSTER: usize = 64;
 
-/// The bounds of some triangles of a [`DrawOrder`](crate::accel::DrawOrder), in object space.
+/// The bounds of some triangles of a [`DrawOrder`](super::DrawOrder), in object space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cluster {
     /// The centre of the bounding sphere.

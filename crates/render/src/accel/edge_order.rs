@@ -1,18 +1,17 @@
 //! The draw order of a mesh's edges.
 //!
-//! Edges follow the vertices as [`DrawOrder`](crate::accel::DrawOrder) numbers them, so neighbours
+//! Edges follow the vertices as [`DrawOrder`] numbers them, so neighbours
 //! in space are neighbours in memory. Each edge keeps its number among the mesh's edges, which
 //! decides between equal depths. The draw order therefore does not change the picture.
 
 use marraztu_core::scene::{Accelerator, AcceleratorPlace, Mesh, NONE};
 
-use super::Accelerated as _;
-use super::draw_order::index;
+use super::draw_order::{DrawOrder, index};
 
 /// An edge in draw order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawEdge {
-    /// The vertices at the ends, as indices into [`DrawOrder::x`](crate::accel::DrawOrder::x);
+    /// The vertices at the ends, as indices into [`DrawOrder::x`];
     /// [`NONE`] if no triangle uses them.
     pub vertices: [u32; 2],
     /// The two polygons at the edge, or its only polygon twice. If the edge has more than two, the
@@ -37,7 +36,7 @@ impl Accelerator for EdgeOrder {
     fn build(mesh: &Mesh) -> Self {
         // Translate vertices of the mesh to vertices of the draw order.
         let mut vertices = vec![NONE; mesh.positions().len()];
-        for triangle in &mesh.draw_order().triangles {
+        for triangle in &mesh.accelerator::<DrawOrder>().triangles {
             let corners = mesh.triangle(triangle.number as usize);
             for (corner, vertex) in corners.into_iter().zip(triangle.vertices) {
                 vertices[mesh.vertex_of(corner) as usize] = vertex;
@@ -67,6 +66,7 @@ impl Accelerator for EdgeOrder {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::accel::Accelerated as _;
     use marraztu_core::scene::{MeshSource, SourceCorner};
 
     /// A roof of two triangles over a square.

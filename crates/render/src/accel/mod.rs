@@ -3,45 +3,14 @@
 //! They are kept in the mesh, which all scenes share: see
 //! [`Accelerator`](marraztu_core::scene::Accelerator).
 
+mod accelerated;
 mod bvh;
 mod clusters;
 mod draw_order;
 mod edge_order;
 
-use marraztu_core::scene::Mesh;
-
+pub use accelerated::Accelerated;
 pub use bvh::{BVH_BLOCK, Bvh, BvhBlock, BvhChild, BvhNode, BvhTriangle};
 pub use clusters::{CLUSTER, Cluster, DrawTriangle};
 pub use draw_order::{DrawOrder, Points};
 pub use edge_order::{DrawEdge, EdgeOrder};
-
-/// The accelerators of a mesh, each built by the first call.
-pub trait Accelerated {
-    /// The triangles and vertices in the order in which they are drawn fastest.
-    fn draw_order(&self) -> &DrawOrder;
-    /// Draws the mesh in the order of its file, unless a better one has been computed: for a
-    /// program that draws one picture and ends, that is not worth its time.
-    fn draw_as_filed(&self);
-    /// The edges in the order in which they are drawn fastest.
-    fn edge_order(&self) -> &EdgeOrder;
-    /// The bounding volume hierarchy in which rays find the triangles that they may meet.
-    fn bvh(&self) -> &Bvh;
-}
-
-impl Accelerated for Mesh {
-    fn draw_order(&self) -> &DrawOrder {
-        self.accelerator()
-    }
-
-    fn draw_as_filed(&self) {
-        self.accelerator_or(|| DrawOrder::as_filed(self));
-    }
-
-    fn edge_order(&self) -> &EdgeOrder {
-        self.accelerator()
-    }
-
-    fn bvh(&self) -> &Bvh {
-        self.accelerator()
-    }
-}

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::Change;
+use super::change::Change;
 use crate::frame::FramePlan;
 use crate::frame::draw::{Draw, Lines, Pipeline, Shaded, Stage};
 use crate::frame::extras::address;

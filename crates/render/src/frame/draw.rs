@@ -1,17 +1,14 @@
 //! The draws of a frame, and the pipelines that colour them.
 
-use crate::accel::{Accelerated as _, DrawOrder, EdgeOrder};
 use std::collections::BTreeSet;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 use glam::{DMat3, DMat4};
 
-use super::FramePlan;
 use super::extras::{Extras, bits};
 use crate::lights::{self, Form, LightRow, PhongMaterial};
-use marraztu_core::accuracy::{LightAt, Tangents};
 use marraztu_core::base::{Shared, color::Color};
-use marraztu_core::scene::{Derived, ItemId, Model, NormalSource, Normals, Texture};
+use marraztu_core::scene::{ItemId, Model, NormalSource, Normals, Texture};
 
 /// One mesh of a frame.
 #[derive(Clone, Debug, PartialEq)]
@@ -47,51 +44,6 @@ impl Draw {
         let part = self.model.mesh.polygon_parts()[polygon as usize];
         self.part_pipelines[part as usize].is_some()
             && self.polygons.as_ref().is_none_or(|some| some.contains(&polygon))
-    }
-
-    /// Computes every derived table of the mesh before drawing, so no thread has to wait for one.
-    pub(crate) fn prepare(&self, plan: &FramePlan) {
-        let pipelines = self.part_pipelines.iter().flatten();
-        let shaded: Vec<&Shaded> = pipelines
-            .filter_map(|pipeline| match &plan.pipelines[*pipeline as usize] {
-                Pipeline::Shaded(shaded) => Some(shaded),
-                Pipeline::Flat(_) => None,
-            })
-            .collect();
-        // Without light, no pixel reads facets or face normals.
-        let lit = shaded.iter().any(|shaded| shaded.light.is_some());
-        let flat = lit && plan.light_at == LightAt::Face;
-        let by_face = lit && self.normals == Normals::Face;
-        // An opacity map counts by its alpha or its brightness, and the alpha of a transparent
-        // texture may not count at all: both depend on the smallest alpha.
-        for shaded in &shaded {
-            let texture = shaded.texture.as_ref().filter(|_| shaded.opacity.is_some());
-            for map in shaded.opacity_map.iter().chain(texture) {
-                let _least: u8 = map.picture.least_alpha();
-            }
-        }
-        let is_bumpy = shaded.iter().any(|shaded| shaded.extras.bump.is_some());
-        let at_vertices = is_bumpy && plan.variants.tangents == Tangents::Vertex;
-        let Lines { edges, face_normals, .. } = self.lines;
-        // Meshes keep their tables, so only the first frame that needs one pays for it.
-        for (what, needed) in [
-            (Derived::Tangents(self.normal_source), at_vertices),
-            (Derived::PolygonOf, true),
-            (Derived::Edges, edges),
-            (Derived::Facets, flat),
-            (Derived::PolygonNormals, by_face || face_normals.is_some()),
-            (Derived::Triangles, by_face),
-            (Derived::Corners, by_face || edges),
-        ] {
-            if needed {
-                self.model.mesh.prepare(what);
-            }
-        }
-        // Accessing an order builds it.
-        let _order: &DrawOrder = self.model.mesh.draw_order();
-        if edges {
-            let _order: &EdgeOrder = self.model.mesh.edge_order();
-        }
     }
 
     /// Returns the pipeline of a drawn triangle.

@@ -3,6 +3,7 @@
 pub(crate) mod color_path;
 pub(crate) mod draw;
 pub(crate) mod extras;
+mod prepare;
 pub(crate) mod raster_mode;
 pub(crate) mod shadows;
 pub(crate) mod variants;
@@ -133,13 +134,6 @@ impl FramePlan {
     /// pictures are drawn larger and averaged.
     pub(crate) fn is_supersampled(&self) -> bool {
         self.lit_by_sample && self.samples == Samples::TwoFiftySix
-    }
-
-    /// Computes every derived table of the meshes. Drawing threads must not compute any of them:
-    /// see [`together`](crate::work_stealing::together).
-    pub(crate) fn prepare(&self) {
-        self.draws.iter().for_each(|draw| draw.prepare(self));
-        self.shadows.prepare(self.variants.shadow_method);
     }
 
     /// Returns whether any surface is transparent.

@@ -4,16 +4,13 @@ use std::sync::OnceLock;
 
 use glam::{DMat3, DMat4, DVec3};
 
-use super::observer::ObserverSpace;
+use super::observer::{CAMERA_MARK, ObserverSpace};
 use marraztu_core::base::once::get_or_compute;
 use marraztu_core::base::{Shared, color::Color, math};
 use marraztu_core::scene::{Camera, Mesh, MeshSource, Model, SourceCorner};
 
 /// The colour of a bulb's diamond.
 pub(super) const YELLOW: Color = Color([255, 255, 0]);
-
-/// The size of a camera model: its longest side, in world units.
-pub(super) const CAMERA_MARK: f64 = 24.0;
 
 /// Half of a diamond's diagonal in world units.
 const DIAMOND: f64 = 1.0;

@@ -2,7 +2,6 @@
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
-use super::helpers::CAMERA_MARK;
 use crate::frame::Viewport;
 use crate::lights::region::Region;
 use crate::screen::clip::Screen;
@@ -10,6 +9,9 @@ use marraztu_core::accuracy::{Resolution, Shot};
 use marraztu_core::base::image::Size;
 use marraztu_core::base::math;
 use marraztu_core::scene::{CameraId, Lens, Observer, Projection, Spheres};
+
+/// The size of a camera model: its longest side, in world units.
+pub(super) const CAMERA_MARK: f64 = 24.0;
 
 /// The distance of the far plane in units of view space: at least this, and less than twice this.
 const FAR: f64 = 1024.0;

@@ -14,7 +14,7 @@ use crate::cancellation::Cancellation;
 use crate::frame::FramePlan;
 use crate::frame::draw::{Back, Draw};
 use crate::layers::{
-    Layer, LayerNames, LayerSet, LayerType, LayerValues, Layers, NormalSpace, id_at,
+    Layer, LayerNames, LayerSet, LayerType, LayerValues, Layers, NormalSpace, id_at, surfaces_alone,
 };
 use crate::picture_camera::{AxesConvention, PictureCamera};
 use crate::plan::plan_frame;
@@ -33,7 +33,7 @@ use crate::tile_layers::TileLayers;
 use marraztu_core::accuracy::{Settings, Shot};
 use marraztu_core::base::math::{self, each};
 use marraztu_core::base::once::without_computing;
-use marraztu_core::scene::{Derived, Fill, ItemId, List, Normals, Projection, View};
+use marraztu_core::scene::{Derived, ItemId, List, Normals, Projection};
 
 impl Renderer {
     /// Computes layers of the picture of a shot; its settings do not matter. The last picture, and
@@ -118,18 +118,6 @@ fn without_light(shot: &Shot) -> Shot {
     scene.lights = List::default();
     let view = surfaces_alone(&shot.view);
     Shot { scene, view, settings: Settings::default(), size: shot.size }
-}
-
-/// Returns the view with filled polygons alone: no lines and no marks.
-pub(crate) fn surfaces_alone(view: &View) -> View {
-    View {
-        fill: Fill::Filled,
-        edges_over_fill: false,
-        face_normals: false,
-        vertex_normals: false,
-        marks: false,
-        ..view.clone()
-    }
 }
 
 /// The rows of a layer that belong to one row of tiles.

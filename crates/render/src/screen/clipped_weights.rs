@@ -11,7 +11,7 @@ use glam::DVec3;
 
 use super::clip::{Clip, Screen};
 use super::coverage::{Snapped, Triangle};
-use super::weights::{HomogeneousWeights, barycentric, with_first};
+use super::homogeneous::{HomogeneousWeights, barycentric, with_first};
 use crate::accel::Accelerated as _;
 use crate::frame::FramePlan;
 use crate::frame::draw::Draw;

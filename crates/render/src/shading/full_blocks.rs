@@ -11,7 +11,7 @@ use fearless_simd::{
 
 use super::interpolate::{CornerValues, Look, depth_between};
 use super::quantize::reflected;
-use super::texels::{OfFirst, PlacedTexture, TexelScratch, product};
+use super::texels::{OfFirst, PlacedTexture, TexelScratch};
 use super::triangle_attributes::TriangleAttributes;
 use crate::lights::{Batch, LightTerm, load, set, store};
 use crate::plan::tile::TileLight;
@@ -451,10 +451,10 @@ fn lit<S: Simd>(
                 let mut pixels = [0; 16];
                 let mut own = tint;
                 if texture.is_some() {
-                    own = product(own, load(lanes, texels, 16 * pair));
+                    own = own.product(load(lanes, texels, 16 * pair));
                 }
                 if vertex_colors.is_some() {
-                    own = product(own, load(lanes, colors, 16 * pair));
+                    own = own.product(load(lanes, colors, 16 * pair));
                 }
                 let mut color = match lights {
                     Some(_) => reflected(lanes, own, batch, 16 * pair),

@@ -12,7 +12,6 @@ use fearless_simd::Level;
 use super::barycentrics::Barycentrics;
 use super::colors::Colors;
 use super::fragments::Fragments;
-use super::texels::product;
 use super::triangle_attributes::{TriangleAttributes, picked};
 use crate::frame::draw::Draw;
 use crate::frame::{Eye, FramePlan, Viewport};
@@ -85,7 +84,7 @@ impl<T: Number, const PAGES: usize> Kernel<T> for Mix<'_, T, PAGES> {
             match &mut to {
                 Mixed::Rows(rows) => store(lanes, value, rows, at),
                 Mixed::Product(rows) => {
-                    store(lanes, product(load(lanes, rows, at), value), rows, at);
+                    store(lanes, load(lanes, rows, at).product(value), rows, at);
                 }
                 Mixed::Colors(colors, thresholds) => {
                     colors.store_by(lanes, value, lanes.load(*thresholds, at), at);

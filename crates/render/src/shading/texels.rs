@@ -15,9 +15,9 @@ use crate::frame::variants::Decoding;
 use crate::lights::{Rows, load, store};
 use crate::screen::clipped_weights::ClippedWeights;
 use crate::screen::coverage::doubled_area;
-use crate::screen::weights::HomogeneousWeights;
+use crate::screen::homogeneous::HomogeneousWeights;
 use crate::simd::gather::SLOTS;
-use crate::simd::{BATCH, Lanes as _, Real, Sixteen, Vec3, in_f64};
+use crate::simd::{BATCH, Lanes as _, Real, Sixteen, in_f64};
 use crate::texture::exact_placement::ExactPlacement;
 use crate::texture::lanes::{Decode, Sampler, Stored, TexelPlaces};
 use crate::texture::placement::{Doubles, LaneSteps, Placement, Steps, less};
@@ -113,7 +113,7 @@ impl TextureSamples<'_, f32> {
         texture.sampler.sample::<S, D>(simd, places, fragments.len, texels);
         for at in (0..fragments.len).step_by(16) {
             let texel = load(lanes, texels, at);
-            store(lanes, product(load(lanes, to, at), texel), to, at);
+            store(lanes, load(lanes, to, at).product(texel), to, at);
         }
     }
 
@@ -195,12 +195,6 @@ impl<T> TextureSamples<'_, T> {
         }
         [f32x16::from_slice(simd, &rows[0]), f32x16::from_slice(simd, &rows[1])]
     }
-}
-
-/// Multiplies two colours.
-#[inline(always)]
-pub(crate) fn product<R: Real>(Vec3([r, g, b]): Vec3<R>, Vec3([x, y, z]): Vec3<R>) -> Vec3<R> {
-    Vec3([r * x, g * y, b * z])
 }
 
 /// The triangles of sixteen pixels.

@@ -8,7 +8,8 @@
 use fearless_simd::{Simd, SimdBase as _, SimdMask as _, f32x16};
 use glam::{DMat4, DVec3};
 
-use super::rays::{LocalRays, POINTS};
+use super::rays::LocalRays;
+use super::shaft::POINTS;
 use marraztu_core::scene::Bounds;
 
 /// The error of a position and of a parameter in f32, relative to the largest coordinate: four

@@ -2,7 +2,7 @@
 
 use glam::DMat4;
 
-use super::rays::POINTS;
+use super::shaft::POINTS;
 use crate::screen::tiles::{BLOCK_PIXELS, PIXELS, TILE_SIDE};
 use crate::simd::Bits;
 

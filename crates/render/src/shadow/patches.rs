@@ -6,8 +6,7 @@
 
 use glam::DVec3;
 
-use super::rays::POINTS;
-use super::shaft::Around;
+use super::shaft::{Around, POINTS};
 use crate::simd::Bits;
 use marraztu_core::base::math::each;
 

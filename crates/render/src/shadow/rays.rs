@@ -4,11 +4,8 @@ use glam::DVec3;
 
 use super::patches::{Patch, find_patches};
 use super::prepared_block::PreparedBlock;
-use super::shaft::Shaft;
+use super::shaft::{POINTS, Shaft};
 use crate::accel::BvhChild;
-
-/// The largest number of rays in a packet: each has a bit in a mask of 64.
-pub(crate) const POINTS: usize = 64;
 
 /// The origins of up to [`POINTS`] rays, in world space, all on one object.
 #[derive(Debug)]

@@ -14,8 +14,10 @@
 use fearless_simd::{Simd, SimdBase as _, SimdMask as _, f32x16};
 use glam::{DMat4, DVec3, Vec3};
 
-use super::rays::POINTS;
 use marraztu_core::base::math::{each, unit};
+
+/// The largest number of rays in a packet: each has a bit in a mask of 64.
+pub(crate) const POINTS: usize = 64;
 
 /// An oriented box around the points of a packet.
 #[derive(Clone, Copy, Debug, Default)]

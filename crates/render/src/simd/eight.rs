@@ -1,11 +1,12 @@
 //! The lanes of the most exact pictures: f64, eight at a time, with the same bits as one at a time.
 
 use fearless_simd::{
-    Select as _, Simd, SimdBase, SimdFloat as _, SimdInto as _, SimdMask as _, f64x8,
+    Level, Select as _, Simd, SimdBase, SimdFloat as _, SimdInto as _, SimdMask as _, f64x8,
 };
 
 use super::gather::SLOTS;
-use super::lanes::{BATCH, Lanes, PARTS};
+use super::lanes::{BATCH, Kernel, Lanes, Number, PARTS};
+use super::level::dispatch;
 use super::power::Power;
 use super::real::Real;
 use super::single::has_own_maximum;
@@ -192,6 +193,22 @@ fn store_whole<S: Simd>(numbers: f64x8<S>, to: &mut [u32]) {
     let shifted: [f64; 8] = *(numbers + 4_503_599_627_370_496.0);
     for (to, number) in to.iter_mut().zip(shifted) {
         *to = number.to_bits() as u32;
+    }
+}
+
+impl Number for f64 {
+    #[inline(always)]
+    fn from_f64(number: f64) -> Self {
+        number
+    }
+
+    #[inline(always)]
+    fn byte(self) -> u8 {
+        marraztu_core::base::color::byte(self)
+    }
+
+    fn run(level: Level, kernel: impl Kernel<Self>) {
+        dispatch!(level, simd => kernel.run(Eight(simd)));
     }
 }
 

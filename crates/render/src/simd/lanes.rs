@@ -1,7 +1,8 @@
-//! Lanes: load several numbers at a time from rows in memory, and store them.
+//! The number types of pictures, and lanes: several numbers at a time.
+
+use fearless_simd::Level;
 
 use super::gather::SLOTS;
-use super::number::Number;
 use super::real::Real;
 use super::vec3::Vec3;
 
@@ -10,6 +11,18 @@ use super::vec3::Vec3;
 /// with its work. It is not a power of two: such rows would start at addresses that alias when
 /// processors compare a load with earlier stores, which costs 3 to 5% of a picture of one triangle.
 pub const BATCH: usize = 240;
+
+/// A number type that pictures can be computed in.
+pub trait Number:
+    Real + Default + PartialEq + Into<f64> + Send + Sync + std::fmt::Debug + 'static
+{
+    /// Converts to the nearest number of this type.
+    fn from_f64(number: f64) -> Self;
+    /// Returns the byte nearest to 255 times the number, clamped and rounded. NaN gives 0.
+    fn byte(self) -> u8;
+    /// Runs a kernel with the lanes for such numbers and the instructions of this level.
+    fn run(level: Level, kernel: impl Kernel<Self>);
+}
 
 /// Loads several numbers at a time from rows in memory, and stores them.
 ///

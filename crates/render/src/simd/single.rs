@@ -326,7 +326,7 @@ impl<S: Simd> Single for f32x16<S> {
 #[cfg(test)]
 #[expect(clippy::cast_possible_truncation, reason = "small numbers")]
 mod tests {
-    use crate::simd::dispatch;
+    use crate::simd::level::dispatch;
     use fearless_simd::Level;
 
     use super::super::vec3::Vec3;

@@ -1,12 +1,13 @@
 //! The lanes of the editor: f32, sixteen at a time.
 
 use fearless_simd::{
-    Bytes as _, Simd, SimdBase as _, SimdFloat as _, SimdInt as _, SimdInto as _, SimdMask as _,
-    f32x16, i32x16, u32x16,
+    Bytes as _, Level, Simd, SimdBase as _, SimdFloat as _, SimdInt as _, SimdInto as _,
+    SimdMask as _, f32x16, i32x16, u32x16,
 };
 
 use super::gather::{SLOTS, pick};
-use super::lanes::{BATCH, Lanes, PARTS};
+use super::lanes::{BATCH, Kernel, Lanes, Number, PARTS};
+use super::level::dispatch;
 use super::real::Real;
 use super::vec3::Vec3;
 use marraztu_core::base::math::each;
@@ -125,4 +126,22 @@ impl<S: Simd> Lanes for Sixteen<S> {
 fn before_rounding<S: Simd>(number: f32x16<S>, threshold: f32x16<S>) -> f32x16<S> {
     let (zero, one) = (number.lift(0.0), number.lift(1.0));
     Real::min(Real::max(number, zero), one) * 255.0 + threshold
+}
+
+impl Number for f32 {
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, reason = "rounding to the nearest f32 is meant")]
+    fn from_f64(number: f64) -> Self {
+        number as Self
+    }
+
+    #[inline(always)]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped before")]
+    fn byte(self) -> u8 {
+        (Real::min(Real::max(self, 0.0), 1.0) * 255.0 + 0.5) as u8
+    }
+
+    fn run(level: Level, kernel: impl Kernel<Self>) {
+        dispatch!(level, simd => kernel.run(Sixteen(simd)));
+    }
 }

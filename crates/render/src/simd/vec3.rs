@@ -52,6 +52,14 @@ impl<R: Real> Vec3<R> {
         Self([a - x, b - y, c - z])
     }
 
+    /// Multiplies number by number.
+    #[inline(always)]
+    #[must_use]
+    pub fn product(self, other: Self) -> Self {
+        let ([a, b, c], [x, y, z]) = (self.0, other.0);
+        Self([a * x, b * y, c * z])
+    }
+
     /// Normalises to length 1. A vector without length stays 0.
     #[inline(always)]
     #[must_use]

@@ -3,61 +3,31 @@
 //! Positions, texels and weights follow [`sample`](super::sample) and [`mips`](super::mips), in
 //! f32. Only the texels themselves are fetched one by one.
 
-use std::sync::OnceLock;
+mod decode;
+mod mip_level;
+mod sampler;
+mod texel_places;
 
 use fearless_simd::{
     Select as _, Simd, SimdBase as _, SimdFloat as _, SimdInt as _, SimdMask as _, f32x16, i32x16,
 };
 
-use self::mip_level::{Footprint, ManyAround, MipLevel};
+use self::decode::{between, channels};
+use self::mip_level::{Footprint, MipLevel};
 use super::sample::brightness;
 use crate::lights::{Rows, load, store};
 use crate::simd::{BATCH, Lanes as _, Real, Sixteen, Vec3, log2};
 use marraztu_core::accuracy::Filter;
-use marraztu_core::base::color::linear_factors;
-use marraztu_core::base::once::get_or_compute;
-use marraztu_core::scene::{Texture, Wrap};
+use marraztu_core::scene::Wrap;
+
+pub(crate) use self::decode::{Decode, Linear, Stored, prepare_decoding};
+pub(crate) use self::sampler::Sampler;
+pub(crate) use self::texel_places::TexelPlaces;
 
 /// The most samples along the longer side of a pixel. Graphics cards have the same limit.
 pub(super) const MOST_PROBES: f32 = 16.0;
 
-/// The largest number of mipmap levels: textures have at most 32,768 texels a side.
-const LEVELS: usize = 16;
-
-/// A texture with the mipmap levels that its filter reads.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Sampler<'a> {
-    levels: &'a [Texture],
-    pub(crate) filter: Filter,
-    /// Width and height of each level.
-    sizes: [[f32; LEVELS]; 2],
-    /// The sizes divided by the size of the first level.
-    scales: [[f32; LEVELS]; 2],
-}
-
-/// Sixteen texture positions, in texels of the first level, reduced to one repetition.
-type Positions<S> = [f32x16<S>; 2];
-
-impl<'a> Sampler<'a> {
-    /// Creates a sampler of the first level, or of all levels if the filter reads mipmaps. `None`
-    /// if the texture has no texels.
-    #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^24 pixels a side")]
-    pub(crate) fn new(levels: &'a [Texture], filter: Filter) -> Option<Self> {
-        let levels = &levels[..levels.len().min(LEVELS)];
-        let mut sizes = [[1.0; LEVELS]; 2];
-        for (i, level) in levels.iter().enumerate() {
-            let size = level.picture.size();
-            (sizes[0][i], sizes[1][i]) = (size.width as f32, size.height as f32);
-        }
-        let has_texels = levels.first()?.picture.size().area() > 0;
-        // Positions are in texels of the first level; these factors convert them to each level.
-        let mut scales = sizes;
-        for (scales, sides) in scales.iter_mut().zip(&sizes) {
-            scales.iter_mut().for_each(|side| *side /= sides[0]);
-        }
-        has_texels.then_some(Self { levels, filter, sizes, scales })
-    }
-
+impl Sampler<'_> {
     /// Samples red, green and blue, as factors, at the first `len` places.
     ///
     /// Each step runs over all places before the next one starts. Within one place, each step waits
@@ -157,13 +127,6 @@ impl<'a> Sampler<'a> {
             }
         };
         number * (1.0 / 255.0)
-    }
-
-    /// Returns the pixels of a level, or an empty slice if the level does not exist.
-    #[inline(always)]
-    fn pixels_of(&self, level: i32) -> &[[u8; 4]] {
-        let level = level.cast_unsigned() as usize % LEVELS;
-        self.levels.get(level).map_or(&[], |level| level.picture.pixels())
     }
 
     /// Wraps a coordinate in texels into the picture: 0 to its side.
@@ -377,117 +340,6 @@ fn add_probe<S: Simd>(
     }
 }
 
-/// Places on a texture to be sampled.
-#[derive(Debug)]
-pub(crate) struct TexelPlaces {
-    /// The positions, in texels of the first level.
-    pub(crate) position: [[f32; BATCH]; 2],
-    /// The squared number of texels that a pixel covers along its longer side, if the filter reads
-    /// mipmaps.
-    pub(crate) footprint: [f32; BATCH],
-    /// The same along its shorter side, if the filter is anisotropic.
-    pub(crate) shorter: [f32; BATCH],
-    /// The longer side in texels, if the filter is anisotropic.
-    pub(crate) longer: [[f32; BATCH]; 2],
-    /// The number of samples along the longer side.
-    probes: [f32; BATCH],
-    /// The finer level that trilinear filtering mixes, and the weight of the coarser one.
-    levels: [[f32; BATCH]; 2],
-    /// The texels around the positions, on the finer and on the coarser level.
-    finer: ManyAround,
-    coarser: ManyAround,
-}
-
-impl Default for TexelPlaces {
-    fn default() -> Self {
-        let row = [0.0; BATCH];
-        Self {
-            position: [row; 2],
-            footprint: row,
-            shorter: row,
-            longer: [row; 2],
-            probes: row,
-            levels: [row; 2],
-            finer: ManyAround::default(),
-            coarser: ManyAround::default(),
-        }
-    }
-}
-
-impl TexelPlaces {
-    #[inline(always)]
-    fn at<S: Simd>(&self, lanes: Sixteen<S>, at: usize) -> Positions<S> {
-        [lanes.load(&self.position[0], at), lanes.load(&self.position[1], at)]
-    }
-}
-
-/// Interpolates: a + (b - a) part.
-#[inline(always)]
-fn between<R: Real>(a: Vec3<R>, b: Vec3<R>, part: R) -> Vec3<R> {
-    a.plus(b.minus(a).times(part))
-}
-
-/// Unpacks red, green and blue of texels, from 0 to 255.
-#[inline(always)]
-fn channels<S: Simd>(texels: i32x16<S>) -> Vec3<f32x16<S>> {
-    Vec3([
-        (texels & 255).to_float(),
-        ((texels >> 8) & 255).to_float(),
-        ((texels >> 16) & 255).to_float(),
-    ])
-}
-
-/// The conversion from the bytes of texels to numbers.
-pub(crate) trait Decode {
-    /// Converts texels to red, green and blue, from 0 to 255.
-    fn channels<S: Simd>(texels: i32x16<S>) -> Vec3<f32x16<S>>;
-}
-
-/// Bytes used as they are stored.
-pub(crate) struct Stored;
-/// Bytes decoded from sRGB.
-pub(crate) struct Linear;
-
-impl Decode for Stored {
-    #[inline(always)]
-    fn channels<S: Simd>(texels: i32x16<S>) -> Vec3<f32x16<S>> {
-        channels(texels)
-    }
-}
-
-impl Decode for Linear {
-    #[inline(always)]
-    fn channels<S: Simd>(texels: i32x16<S>) -> Vec3<f32x16<S>> {
-        let simd = texels.simd;
-        let table = decoded_bytes();
-        let texels = <[i32; 16]>::from(texels);
-        let mut rows = [[0.0; 16]; 3];
-        for (lane, texel) in texels.into_iter().enumerate() {
-            let [r, g, b, _] = texel.to_le_bytes();
-            rows[0][lane] = table[usize::from(r)];
-            rows[1][lane] = table[usize::from(g)];
-            rows[2][lane] = table[usize::from(b)];
-        }
-        Vec3([
-            f32x16::from_slice(simd, &rows[0]),
-            f32x16::from_slice(simd, &rows[1]),
-            f32x16::from_slice(simd, &rows[2]),
-        ])
-    }
-}
-
-/// Returns the table of linear values: 255 times the linear value of each byte.
-fn decoded_bytes() -> &'static [f32; 256] {
-    static TABLE: OnceLock<[f32; 256]> = OnceLock::new();
-    #[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant")]
-    get_or_compute(&TABLE, || linear_factors().map(|linear| (255.0 * linear) as f32))
-}
-
-/// Fills the decoding tables before drawing, so no thread has to wait for them.
-pub(crate) fn prepare_decoding() {
-    decoded_bytes();
-}
-
 /// The single number that is read from a texel.
 trait OneNumber {
     /// Extracts the numbers, from 0 to 255.
@@ -514,5 +366,3 @@ impl OneNumber for Brightness {
         brightness(channels(texels))
     }
 }
-
-mod mip_level;

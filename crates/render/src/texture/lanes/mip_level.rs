@@ -5,7 +5,8 @@ use fearless_simd::{
     f32x16, i32x4, i32x16, u8x64,
 };
 
-use super::{Decode, LEVELS, Positions, Sampler, between};
+use super::decode::{Decode, between};
+use super::sampler::{LEVELS, Sampler};
 use crate::simd::gather::{permute, permutes};
 use crate::simd::{BATCH, Lanes as _, Sixteen, Vec3};
 use marraztu_core::base::image::Size;
@@ -148,7 +149,7 @@ impl<S: Simd> MipLevel<S> {
         &self,
         simd: S,
         sampler: &Sampler<'_>,
-        [x, y]: Positions<S>,
+        [x, y]: [f32x16<S>; 2],
     ) -> i32x16<S> {
         // A position on the upper border belongs to the last texel.
         let column = x.to_int::<i32x16<S>>().min(self.width - 1);
@@ -166,14 +167,14 @@ impl<S: Simd> MipLevel<S> {
         &self,
         simd: S,
         sampler: &Sampler<'_>,
-        position: Positions<S>,
+        position: [f32x16<S>; 2],
     ) -> Footprint<S> {
         self.texels(simd, sampler, &self.around(simd, position))
     }
 
     /// Computes the columns and rows of the four texels around each position.
     #[inline(always)]
-    pub(super) fn around(&self, simd: S, [x, y]: Positions<S>) -> Around<S> {
+    pub(super) fn around(&self, simd: S, [x, y]: [f32x16<S>; 2]) -> Around<S> {
         // Texel centres are at halves, so the lower left neighbour is half a texel back.
         let (x, y) = (x * self.scale[0] - 0.5, y * self.scale[1] - 0.5);
         let (left, lower) = (x.floor(), y.floor());
