@@ -27,8 +27,8 @@ use crate::plan::color_path::choose;
 use crate::raster::geometry::ScreenGeometry;
 use crate::screen::sample_positions::{SamplePositions, passes, shifts};
 use crate::screen::tiles::TILE_SIDE;
-use crate::shading::interpolated::ShadingNumber;
 use crate::shading::light_terms::LightTerms;
+use crate::shading::path_number::PathNumber;
 use crate::shadow::maps::ShadowMaps;
 use crate::shadow::rays::RayCount;
 use crate::shadow::tracer::Tracer;
@@ -389,7 +389,7 @@ impl Renderer {
     }
 
     /// Draws tiles in parallel, with a painter per thread.
-    fn draw<T: ShadingNumber>(
+    fn draw<T: PathNumber>(
         &mut self,
         cache: &mut ShadingCache<T>,
         plan: &FramePlan,
@@ -478,7 +478,7 @@ struct ShadingCache<T> {
     painters: Vec<Painter<T>>,
 }
 
-impl<T: ShadingNumber> ShadingCache<T> {
+impl<T: PathNumber> ShadingCache<T> {
     fn prepare(&mut self, plan: &FramePlan) {
         self.terms.prepare(plan);
         self.lit.prepare(plan);

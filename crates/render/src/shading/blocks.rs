@@ -5,9 +5,9 @@
 
 use super::context::{Group, ShadingContext, group_of};
 use super::full_blocks::{BlockLight, Blocks, Canvas, Corners, light, mix};
-use super::interpolated::ShadingNumber;
 use super::map_texels::{TexelSource, TexturePlacement, place};
-use super::surface::{Out, Shader};
+use super::path_number::PathNumber;
+use super::shader::{Out, Shader};
 use super::texels::PlacedTexture;
 use super::triangle_attributes::TriangleAttributes;
 use crate::frame::color_path::FullPath;
@@ -21,7 +21,7 @@ fn by<'a>(context: &'a ShadingContext<'_, f32>, cut: Option<&'a ClippedWeights>)
     Corners { cut, interpolation, thresholds: context.terms.thresholds() }
 }
 
-impl<T: ShadingNumber> Shader<T> {
+impl<T: PathNumber> Shader<T> {
     /// Colours the pixels of blocks that one triangle covers fully.
     pub(crate) fn full_blocks(
         &mut self,
@@ -40,9 +40,7 @@ impl<T: ShadingNumber> Shader<T> {
             return blocks.each(|block| canvas.fill(canvas.offset_of(block), color));
         }
         // A triangle that is clipped, wide or without area may need lists all the same.
-        if let Some((shader, group)) = T::single(self, &group)
-            && shader.blocks_in_one_pass(group, blocks, canvas)
-        {
+        if T::blocks_in_one_pass(self, &group, blocks, canvas) {
             return;
         }
         // All other blocks get a fragment list each.
@@ -57,7 +55,7 @@ impl<T: ShadingNumber> Shader<T> {
 impl Shader<f32> {
     /// Colours fully covered blocks, one block at a time without a list of fragments. Returns
     /// whether it did.
-    fn blocks_in_one_pass(
+    pub(super) fn blocks_in_one_pass(
         &mut self,
         group: &Group<'_, f32>,
         blocks: Blocks,

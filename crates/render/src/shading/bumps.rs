@@ -20,8 +20,10 @@ use glam::{DMat3, DVec3};
 use super::context::{Group, ShadingContext};
 use super::interpolate::{Points, mixed};
 use super::interpolated::ShadingNumber;
-use super::map_texels::{TexelSource, Texels};
-use super::surface_maps::{Map, MapRows, TangentRows};
+use super::map_rows::{Map, MapRows, TangentRows};
+use super::map_texels::TexelSource;
+use super::texels::Texels;
+
 use super::triangle_attributes::{TriangleAttributes, picked};
 use crate::frame::draw::Draw;
 use crate::frame::extras::Bump;

@@ -9,12 +9,9 @@ use fearless_simd::{
 use glam::DVec3;
 
 use super::barycentrics::{Barycentrics, Weigh};
-use super::context::Group;
 use super::fragments::Fragments;
 use super::full_blocks::{Linear as _, Wide};
-use super::map_texels::Texels;
-use super::surface::Shader;
-use super::texels::{TexelScratch, TextureSamples, lane_steps};
+use super::texels::{TexelScratch, Texels, TextureSamples, lane_steps};
 use super::triangle_attributes::{AttributeNumber, TriangleAttributes, picked};
 use crate::frame::FramePlan;
 use crate::frame::draw::Draw;
@@ -35,13 +32,6 @@ use marraztu_core::scene::Texture;
 /// paths: they handle nothing.
 #[expect(unused_variables, reason = "the defaults read nothing")]
 pub(crate) trait ShadingNumber: Light + AttributeNumber {
-    /// Returns the same shader and group, if their number type is f32.
-    fn single<'s, 'g, 'a>(
-        shader: &'s mut Shader<Self>,
-        group: &'g Group<'a, Self>,
-    ) -> Option<(&'s mut Shader<f32>, &'g Group<'a, f32>)> {
-        None
-    }
     /// Computes all barycentric coordinates sixteen pixels at a time, if the triangles allow it.
     /// Returns whether they do.
     fn find(
@@ -183,13 +173,6 @@ impl<T: ShadingNumber> Barycentrics<T> {
 impl ShadingNumber for f64 {}
 
 impl ShadingNumber for f32 {
-    fn single<'s, 'g, 'a>(
-        shader: &'s mut Shader<Self>,
-        group: &'g Group<'a, Self>,
-    ) -> Option<(&'s mut Shader<Self>, &'g Group<'a, Self>)> {
-        Some((shader, group))
-    }
-
     fn find(
         interpolation: Interpolation,
         level: Level,

@@ -10,7 +10,7 @@ use super::colors::Sums;
 use super::context::ShadingContext;
 use super::interpolated::ShadingNumber;
 use super::resolve::add_other;
-use super::surface::{Out, Shader};
+use super::shader::{Out, Shader};
 use crate::frame::FramePlan;
 use crate::raster::layers::Layers;
 use crate::raster::tile::Visibility;

@@ -5,7 +5,9 @@ use crate::simd::dispatch;
 use super::context::{Group, ShadingContext};
 use super::interpolate::Points;
 use super::interpolated::ShadingNumber;
-use super::texels::{FarTexture, PlacedTexture, TexelScratch, TextureSamples, footprint, steps};
+use super::texels::{
+    FarTexture, PlacedTexture, TexelScratch, Texels, TextureSamples, footprint, steps,
+};
 use super::triangle_attributes::{TriangleAttributes, asks_ahead};
 use crate::frame::variants::Decoding;
 use crate::lights::Rows;
@@ -79,15 +81,6 @@ pub(crate) struct TexturePlacement {
     pub(super) far: Vec<FarTexture>,
     /// The memory for reading it.
     pub(super) scratch: TexelScratch,
-}
-
-/// The kind of data read from a map.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Texels {
-    /// Red, green and blue, multiplied into the rows.
-    Colors,
-    /// The slopes of heights along u and v, per texel, which replace the first two rows.
-    Slopes,
 }
 
 impl<T: ShadingNumber> Points<'_, T> {

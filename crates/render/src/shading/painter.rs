@@ -14,10 +14,10 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use super::colors::Sums;
 use super::context::{ShadingContext, group_of};
 use super::full_blocks::{Blocks, Canvas};
-use super::interpolated::ShadingNumber;
 use super::layers::Layered;
-use super::resolve::{Kept, Samples};
-use super::surface::{Out, Shader};
+use super::path_number::PathNumber;
+use super::samples::{Kept, Samples};
+use super::shader::{Out, Shader};
 use crate::frame::FramePlan;
 use crate::raster::tile::Visibility;
 use crate::screen::coverage::PixelBox;
@@ -125,7 +125,7 @@ pub(crate) struct Painter<T> {
     pixels: Vec<[u8; 4]>,
 }
 
-impl<T: ShadingNumber> Default for Painter<T> {
+impl<T: PathNumber> Default for Painter<T> {
     fn default() -> Self {
         Self {
             shader: Shader::default(),
@@ -137,7 +137,7 @@ impl<T: ShadingNumber> Default for Painter<T> {
     }
 }
 
-impl<T: ShadingNumber> Painter<T> {
+impl<T: PathNumber> Painter<T> {
     /// Paints a tile of the picture into its band.
     pub(crate) fn paint(
         &mut self,

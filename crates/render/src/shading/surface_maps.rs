@@ -2,96 +2,23 @@
 //! its highlights, and opacity.
 
 use super::context::{Group, ShadingContext};
-use super::interpolate::{CornerValues, Mixed, Points, mix};
+use super::interpolate::{Mixed, Points, mix};
 use super::interpolated::ShadingNumber;
-use super::map_texels::{TexelSource, Texels, TexturePlacement};
-use super::surface::Shader;
+use super::map_rows::{Map, MapRows};
+use super::map_texels::TexelSource;
+use super::shader::Shader;
+use super::texels::Texels;
 use crate::frame::draw::Shaded;
 use crate::frame::extras::{Extras, Glow};
 use crate::frame::variants::Decoding;
-use crate::lights::Rows;
 use crate::simd::gather::SLOTS;
-use crate::simd::{BATCH, Number, Vec3, dispatch};
+use crate::simd::{BATCH, Vec3, dispatch};
 use crate::texture::sample::{brightness, opacity_of, sample};
 use crate::texture::uv::{uv, uvs};
 use marraztu_core::base::Shared;
 use marraztu_core::base::color::linear;
 use marraztu_core::base::math::each;
 use marraztu_core::scene::Texture;
-
-/// Working memory for additional maps, allocated when a surface first has one.
-#[derive(Debug)]
-pub(crate) struct MapRows<T> {
-    /// The light added to the colour of each pixel.
-    pub(super) glow: Rows<T>,
-    /// The texels of the current map.
-    pub(super) texels: Rows<T>,
-    /// The placement of each map.
-    placements: [TexturePlacement; Map::COUNT],
-    /// The tangents of the triangles, if they have bump maps.
-    pub(super) tangents: TangentRows<T>,
-}
-
-/// The maps of a surface in addition to its texture.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Map {
-    Emission,
-    Ambient,
-    Specular,
-    Exponent,
-    Bump,
-}
-
-impl Map {
-    const COUNT: usize = 5;
-}
-
-impl<T: ShadingNumber> Default for MapRows<T> {
-    fn default() -> Self {
-        let rows = [[T::default(); BATCH]; 3];
-        Self {
-            glow: rows,
-            texels: rows,
-            placements: Default::default(),
-            tangents: TangentRows::default(),
-        }
-    }
-}
-
-impl<T: ShadingNumber> MapRows<T> {
-    /// Reads a map into the rows of texels, which start as `base`.
-    pub(super) fn read(
-        &mut self,
-        group: &Group<'_, T>,
-        points: Points<'_, T>,
-        (map, source, what): (Map, TexelSource<'_>, Texels),
-        base: [f64; 3],
-    ) {
-        let Self { texels, placements, .. } = self;
-        for (row, base) in texels.iter_mut().zip(base) {
-            row.fill(T::from_f64(base));
-        }
-        let placement = &mut placements[map as usize];
-        points.read(group, (source, what), placement, (base, texels));
-    }
-}
-
-/// The tangents of some triangles, slot by slot.
-#[derive(Debug)]
-pub(super) struct TangentRows<T> {
-    /// At vertices: T of the first corner, and the differences of the others from it. At pixels:
-    /// the vectors that give T and B in a cross product with N; the third is unused.
-    pub(super) vectors: CornerValues<T>,
-    /// At vertices: the sign s.
-    pub(super) signs: [T; SLOTS],
-}
-
-impl<T: Number> Default for TangentRows<T> {
-    fn default() -> Self {
-        let row = [T::default(); SLOTS];
-        Self { vectors: [[row; 3]; 3], signs: row }
-    }
-}
 
 impl<T: ShadingNumber> Shader<T> {
     /// Computes t at the pixels of the group: texel x tint x vertex colour, each 1 if absent.

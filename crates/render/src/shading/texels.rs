@@ -26,6 +26,15 @@ use crate::texture::uv::Uvs;
 use marraztu_core::accuracy::Filter;
 use marraztu_core::scene::Texture;
 
+/// The kind of data read from a map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Texels {
+    /// Red, green and blue, multiplied into the rows.
+    Colors,
+    /// The slopes of heights along u and v, per texel, which replace the first two rows.
+    Slopes,
+}
+
 /// A texture on the triangles of a list.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlacedTexture<'a> {

@@ -11,8 +11,9 @@ use std::ops::Range;
 use super::context::{ShadingContext, are_of, group_of, one_group};
 use super::full_blocks::Canvas;
 use super::interpolated::ShadingNumber;
+use super::path_number::PathNumber;
 use super::runs::{Runs, Shown};
-use super::surface::{Out, Shader, Waiting};
+use super::shader::{Out, Shader, Waiting};
 use super::tiny::MANY;
 use crate::frame::color_path::ListPath;
 use crate::raster::visibility_buffer::{Visible, seen};
@@ -24,7 +25,7 @@ use marraztu_core::base::color::Color;
 /// The number of triangles above which a block is coloured separately.
 const MANY_TRIANGLES: usize = 24;
 
-impl<T: ShadingNumber> Shader<T> {
+impl<T: PathNumber> Shader<T> {
     /// Colours a block with the upper left pixel `corner` into a tile, starting at index `at`: at
     /// the latest when [`Shader::finish_waiting`] is called. Background pixels get the colour
     /// `fill`; without one, they are left unchanged. Returns whether any pixel shows more than the
@@ -41,9 +42,8 @@ impl<T: ShadingNumber> Shader<T> {
         // Three ways to wait: with tiny triangles, with the blocks already waiting, or as the first
         // one.
         if runs.new_starts().count_ones() >= MANY
-            && let Some((shader, group)) =
-                T::single(self, &group_of(context, runs.first_triangle()))
-            && shader.wait_tiny(group, &runs, corner, (canvas, at))
+            && let group = group_of(context, runs.first_triangle())
+            && T::wait_tiny(self, &group, (&runs, corner), (canvas, at))
         {
             put_others(context, visibility, runs.shown(), (canvas, at), fill);
             return true;
@@ -92,8 +92,8 @@ impl<T: ShadingNumber> Shader<T> {
             let first =
                 if are_tiny { &self.fragments.each()[0] } else { &self.fragments.numbers[0] };
             let group = group_of(context, *first);
-            if are_tiny && let Some((shader, group)) = T::single(self, &group) {
-                shader.finish_tiny(group, canvas);
+            if are_tiny {
+                T::finish_tiny(self, &group, canvas);
             } else {
                 self.color_group(&group, &mut Out::Waiting(canvas));
             }
@@ -132,7 +132,9 @@ impl<T: ShadingNumber> Shader<T> {
     const fn has_room(&self) -> bool {
         self.fragments.count <= MANY_TRIANGLES
     }
+}
 
+impl<T: ShadingNumber> Shader<T> {
     /// Copies the colours into the waiting blocks.
     pub(super) fn copy_waiting(&self, canvas: &mut Canvas<'_>) {
         // The fragments of a block end where the next block begins.
