@@ -125,7 +125,8 @@ fn whatever_fast_paths_cannot_do_is_left_to_fragment_lists() {
     let dithered = Settings { rounding: Rounding::Dithered, ..with_light(LightAt::Face) };
     expect("dithered flat shading", large(), dithered, (&[ALONE], &[]));
     let linear = Settings { light_values: LightValues::Linear, ..with_light(LightAt::Vertex) };
-    expect("linear Gouraud shading", finest(), linear, (&[ALONE], &[JOINED]));
+    expect("linear Gouraud shading of small triangles", fine(), linear, (&[JOINED], &[ALONE]));
+    expect("linear Gouraud shading of tiny triangles", finest(), linear, (&[ALONE], &[JOINED]));
 }
 
 #[test]
