@@ -57,24 +57,32 @@ fn between(a: DMat3, b: DMat3) -> f64 {
 fn case_56_looking_straight_down_or_at_ones_own_eye_is_finite_and_does_not_jump() {
     let (scene, view) = desk(Subject::Camera, Transformation::Translation);
     let middle = centre(&scene, &view);
-    let turn = DVec3::new(37.0, -90.0, 0.0);
+    // The axes before and after aiming at the object, from a height above it and a little aside.
+    let aimed = |pitch: f64, height: f64, aside: f64| {
+        let (mut scene, camera) = (scene.clone(), view.camera);
+        let turn = DVec3::new(37.0, pitch, 0.0);
+        let command = placement::camera_turn(&scene, &view, camera, turn, GesturePhase::First);
+        apply(&mut scene, command);
+        let eye = middle + DVec3::new(aside * height, height, -aside * height);
+        let command = placement::camera_eye(&scene, &view, camera, eye, GesturePhase::First);
+        apply(&mut scene, command);
+        let before = pose(&scene, &view).axes;
+        let command = transform::toggle_analysis(&scene, &view);
+        apply(&mut scene, command);
+        let after = pose(&scene, &view).axes;
+        assert!(skew(after) < 1e-12);
+        [before, after]
+    };
     let mut jump = 0.0_f64;
     for height in [1e-3, 1.0, 1e3] {
+        // A level camera has the target right below: its up and the direction are parallel.
+        let [_, below] = aimed(0.0, height, 0.0);
         for aside in [0.0, 1e-12, 1e-9, 1e-7, 7e-7] {
-            let mut scene = scene.clone();
-            let eye = middle + DVec3::new(aside * height, height, -aside * height);
-            let camera = view.camera;
-            let command = placement::camera_turn(&scene, &view, camera, turn, GesturePhase::First);
-            apply(&mut scene, command);
-            let command = placement::camera_eye(&scene, &view, camera, eye, GesturePhase::First);
-            apply(&mut scene, command);
-            // `before` already looks straight down, so aiming at the object should hardly turn it.
-            let before = pose(&scene, &view).axes;
-            let command = transform::toggle_analysis(&scene, &view);
-            apply(&mut scene, command);
-            let after = pose(&scene, &view).axes;
+            let [_, after] = aimed(0.0, height, aside);
+            jump = jump.max(between(below, after));
+            // This one already looks straight down, so aiming at the object should hardly turn it.
+            let [before, after] = aimed(-90.0, height, aside);
             jump = jump.max(between(before, after));
-            assert!(skew(after) < 1e-12);
         }
     }
     // The eye at the target: there is no direction to look along, so the axes stay as they are.

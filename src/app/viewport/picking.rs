@@ -173,7 +173,7 @@ mod tests {
         state.view.only_selected = true;
         let size = Size::new(800, 600);
         assert_eq!(objects_at(&state, [400, 300], size), [ObjectId(102)]);
-        let rect = Rect::from_min_size(egui::Pos2::ZERO, egui::vec2(800.0, 600.0));
+        let rect = Rect::from_min_size(Pos2::ZERO, egui::vec2(800.0, 600.0));
         let onto = Projection::new(&state, rect, size);
         assert_eq!(objects_within(&state, &onto, rect, size), [ObjectId(102)]);
         // Inside of its nearest face, without a vertex.

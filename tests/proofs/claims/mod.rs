@@ -46,7 +46,7 @@ pub(crate) struct Proof {
     pub(crate) whole: u64,
     /// The least number of events per thousand cases, which keeps the check from being vacuous.
     pub(crate) shows: &'static [(&'static str, u64)],
-    /// Batches that once contradicted the claim.
+    /// Batches that once contradicted the claim, or that alone notice a breakage.
     pub(crate) regressions: &'static [u64],
     /// Checks the cases of a batch.
     pub(crate) check: fn(u64) -> Result<Tally, String>,

@@ -21,7 +21,7 @@ pub(crate) const PLAN: Proof = Proof {
     quick: 10_000,
     whole: 100_000,
     shows: &[("pixels that show something", 200_000)],
-    regressions: &[4569],
+    regressions: &[644, 4569],
     check: is_complete,
 };
 
