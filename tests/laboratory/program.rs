@@ -88,9 +88,11 @@ fn a_pixel_is_explained_and_one_outside_is_refused() {
     let arguments = ["lab", "--size", "64x64", "--preset", "draft", "--shading", "face"];
     let (out, _) = lab(0, folder.path(), &[&arguments[..], &["--pixel", "0,0"]].concat());
     assert!(out.contains("shows  the background") && out.contains("0 byte steps off"), "{out}");
-    assert!(out.contains("shading pixel instead of face"), "{out}");
-    assert!(out.contains("resolution full instead of half"), "{out}");
-    assert!(out.contains("filter anisotropic instead of bilinear"), "{out}");
+    assert!(!out.contains("nearer"), "{out}");
+    let (out, _) = lab(0, folder.path(), &[&arguments[..], &["--pixel", "36,33"]].concat());
+    assert!(out.contains("  full resolution: (0, 0, 179), 130 steps nearer"), "{out}");
+    assert!(out.contains("  256 samples per pixel: "), "{out}");
+    assert!(out.contains("other choices change nothing here"), "{out}");
     let (_, err) = lab(1, folder.path(), &[&arguments[..], &["--pixel", "64,0"]].concat());
     assert!(err.contains("there is no 64,0"), "{err}");
 }

@@ -92,7 +92,8 @@ fn a_preset_is_chosen_by_its_row_and_by_its_key() {
 
 #[test]
 fn a_slow_picture_shows_its_progress_and_is_cancelled_by_a_click() {
-    let mut editor = Editor::of_size(1000.0, 640.0);
+    // Small pictures are drawn before their progress is shown.
+    let mut editor = Editor::of_size(3000.0, 2000.0);
     editor.settle();
     // Asking and settling would wait for the picture.
     let ctx = editor.harness.ctx.clone();

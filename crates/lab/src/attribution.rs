@@ -126,7 +126,7 @@ impl Attribution {
         let others = self.shares.iter().filter(|share| share.steps == 0).count();
         if others > 0 && others < self.shares.len() {
             lines.push(format!("  {others} other choices change nothing here"));
-        } else if others > 0 {
+        } else if others > 0 && self.steps() > 0 {
             lines.push("  no choice alone brings it nearer".to_owned());
         }
         if self.shares.is_empty() {

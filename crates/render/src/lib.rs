@@ -36,7 +36,8 @@
 //! let mut renderer = Renderer::default();
 //! let picture = renderer.render(&plan);
 //! assert_eq!(picture.pixel(0, 0), scene.background.opaque());
-//! assert_ne!(picture.pixel(32, 24), scene.background.opaque());
+//! // The ball rests on the ground, at the height of the eye.
+//! assert_ne!(picture.pixel(32, 19), scene.background.opaque());
 //! # Ok::<(), marraztu_core::scene::CommandError>(())
 //! ```
 //!

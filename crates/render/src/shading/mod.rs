@@ -9,10 +9,10 @@
 //! (MSAA resolve).
 //!
 //! Blocks with the same surface are `waiting` for each other and are coloured together. Blocks of
-//! triangles of about a pixel are coloured without looking triangles up (`tiny`).
-//! Blocks that one triangle covers fully (`blocks`) take all of these steps in one pass without a
-//! list (`full_blocks`). Blocks that transparent triangles reach are coloured layer by layer
-//! (`layers`), each with its opacity, and combined by alpha blending (`blend`). With light per face,
+//! triangles of about a pixel are coloured without looking triangles up (`tiny`). Blocks that one
+//! triangle covers fully (`blocks`) take all of these steps in one pass without a list
+//! (`full_blocks`). Blocks that transparent triangles reach are coloured layer by layer (`layers`),
+//! each with its opacity, and combined by alpha blending (`blend`). With light per face,
 //! `new_faces` lights a tile's triangles once, into a table (`face_colors`).
 //!
 //! f32 and f64 share all of this (`interpolated`) except the paths without lists, which f32 alone
