@@ -238,7 +238,7 @@ impl Shot {
                 normal: point.normal.to_array(),
                 is_back: point.back,
             });
-            let rows = pixel::rows(&shot.scene, &explained);
+            let rows = pixel::rows(&shot.scene, &explained, 6);
             Ok(Explanation {
                 text: pixel::lines(&shot.scene, &explained).join("\n"),
                 color: explained.bytes,
