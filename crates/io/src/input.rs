@@ -89,7 +89,7 @@ impl Input {
     /// Parses the input as a model.
     ///
     /// # Errors
-    /// As [`load`](super::load).
+    /// As [`load`](super::load()).
     pub fn model(&self, options: &LoadOptions, progress: &Progress) -> Result<Loaded, LoadError> {
         parse(&self.bytes, &self.name, Some(&self.folder), options, progress)
     }

@@ -7,8 +7,8 @@
 //! parsed in order ([`join`]), usable faces are selected ([`sound`]), and a [`Mesh`] is built from
 //! them. Each `v` of the file becomes a vertex of the mesh, used or not.
 //!
-//! Faults that can be skipped or repaired without guessing become [`Finding`]s: an unreadable
-//! vertex costs only its faces, not the file.
+//! Faults that can be skipped or repaired without guessing become [`Finding`](crate::Finding)s: an
+//! unreadable vertex costs only its faces, not the file.
 //!
 //! The format is that of Wavefront's "Advanced Visualizer", Appendix B1, with the vertex colours
 //! that MeshLab and others write.

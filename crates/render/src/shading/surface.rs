@@ -1,9 +1,9 @@
 //! Shades blocks: from visibility to colours.
 //!
 //! A block's pixels are listed with the triangles that they show ([`Fragments`]). Attributes are
-//! fetched once per triangle ([`TriangleAttributes`]), interpolated ([`Barycentrics`]), lit
-//! ([`Batch`]), and converted to bytes. With flat shading, light is evaluated once for each face of
-//! the block, and no barycentric coordinates are computed.
+//! fetched once per triangle ([`TriangleAttributes`]), interpolated (`barycentrics`), lit
+//! (`lights::Batch`), and converted to bytes. With flat shading, light is evaluated once for each
+//! face of the block, and no barycentric coordinates are computed.
 
 use super::bumps::bend;
 use super::colors::Form;
