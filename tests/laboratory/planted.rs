@@ -1,10 +1,15 @@
 //! Planted slowdowns and errors are attributed to the right choice only.
 
-use marraztu_core::accuracy::{Axis, AxisKind, Choice, LightAt, Settings};
+use std::collections::BTreeSet;
+
+use marraztu_core::accuracy::{Axis, AxisKind, Choice, LightAt, Settings, Shot};
+use marraztu_core::base::image::Size;
+use marraztu_io::default_scene;
 use marraztu_lab::attribution::attribute;
 use marraztu_lab::candidates::Group;
 use marraztu_lab::error::{Error, Measure, Region};
 use marraztu_lab::pairs::Ratio;
+use marraztu_lab::picture_source::{PictureSource as _, Studio};
 use marraztu_lab::report::{Budgets, Panels, Report};
 use marraztu_lab::statistics::Quartiles;
 use marraztu_lab::sweep::{Findings, Measured, Verdict};
@@ -237,4 +242,20 @@ fn a_ratio_that_may_be_twice_as_large_says_that_the_machine_is_too_busy() {
     assert_eq!(Verdict::of(&ratio, 0.2), Verdict::Alike);
     ratio.interval = [0.5, 3.0];
     assert_eq!(Verdict::of(&ratio, 0.0), Verdict::Busy);
+}
+
+#[test]
+fn the_ideal_of_one_pixel_is_that_of_the_whole_picture() {
+    let (scene, view) = default_scene();
+    let ideal = Settings::default().ideal();
+    let mut studio = Studio::new(Shot::new(&scene, &view, &ideal, Size::new(64, 48)));
+    studio.draw(&ideal);
+    let whole = studio.picture().clone();
+    let mut colors = BTreeSet::new();
+    for at in [[0, 0], [63, 47], [20, 24], [32, 24], [33, 20], [40, 30], [50, 24]] {
+        let [r, g, b, _] = whole.pixel(at[0], at[1]);
+        assert_eq!(studio.ideal_pixel(&ideal, at), [r, g, b], "{at:?}");
+        colors.insert([r, g, b]);
+    }
+    assert!(colors.len() > 2, "{colors:?}");
 }

@@ -49,6 +49,19 @@ fn the_strip_offers_lessons_and_is_dismissed() {
 }
 
 #[test]
+fn esc_dismisses_the_strip_only_where_it_is_shown() {
+    let mut editor = greeted();
+    editor.perform(Action::Escape);
+    assert!(!is_shown(&editor) && !editor.shows("Esc again quits"));
+    let mut editor = Editor::small();
+    editor.harness.state_mut().greet();
+    editor.settle();
+    assert!(!is_shown(&editor), "there is no room");
+    editor.perform(Action::Escape);
+    assert!(editor.state().greeting && editor.shows("Esc again quits"));
+}
+
+#[test]
 fn the_strip_opens_a_model_alone_as_a_drop_does() {
     let (_folder, path) = folder_with("cube.obj", CUBE);
     let mut editor = greeted();

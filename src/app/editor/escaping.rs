@@ -7,7 +7,7 @@ use egui::Context;
 
 use super::App;
 use crate::app::actions::{FileIntent, LabRequest};
-use crate::app::panels::Panel;
+use crate::app::panels::{Panel, greeting};
 use marraztu_core::edit::several::Others;
 
 /// The time, in seconds, within which a second Esc quits.
@@ -42,6 +42,13 @@ impl App {
         }
     }
 
+    /// Hides the greeting for good, if it is shown.
+    fn dismisses_greeting(&mut self) -> bool {
+        let is_shown = self.viewport.rect().is_some_and(|it| greeting::is_shown(&self.state, it));
+        self.state.greeting &= !is_shown;
+        is_shown
+    }
+
     /// Lets the next Esc be a first one.
     pub(super) fn forget_quitting(&mut self) {
         if self.quits_until.take().is_some() {
@@ -72,10 +79,7 @@ impl App {
             return true;
         }
         // Files keep the history open, so it closes after the modes.
-        if std::mem::take(&mut self.state.greeting)
-            || self.dismiss_notices()
-            || self.closes(Panel::History)
-        {
+        if self.dismisses_greeting() || self.dismiss_notices() || self.closes(Panel::History) {
             return true;
         }
         let is_away = self.state.lab.away;

@@ -7,7 +7,7 @@ use crate::app::actions::Request;
 use crate::app::documents::dialogs::Dialog;
 use crate::app::state::{Notice, NoticeGroup, NoticeKind, Offer, State};
 use marraztu_core::edit::{Gesture, Refusal, framing};
-use marraztu_core::scene::{Object, ObjectId, Shape};
+use marraztu_core::scene::ObjectId;
 use marraztu_io::{Finding, FindingKind};
 
 impl App {
@@ -75,7 +75,7 @@ impl App {
         }
     }
 
-    /// Lists all notices in a dialog: those that are shown, and those before.
+    /// Lists all notices in a dialog, the shown ones first.
     pub(super) fn show_past_notices(&mut self) {
         let State { notices, past_notices, .. } = &self.state;
         let all = notices.iter().chain(past_notices.iter().rev());
@@ -93,9 +93,8 @@ impl App {
     /// Returns whether the grid on the ground is on, and behind a ground.
     pub(super) fn hides_grid(&self) -> bool {
         let State { scene, view, helpers, .. } = &self.state;
-        let is_ground = |object: &Object| Shape::of(&object.model) == Some(Shape::Ground);
         let mut all = scene.objects.iter();
-        helpers.grid && all.any(|(id, object)| is_ground(object) && view.shows(id, object))
+        helpers.grid && all.any(|(id, object)| object.is_ground() && view.shows(id, object))
     }
 
     /// Dismisses all notices, which stay in the list of the status line. Unsaved work of a crashed

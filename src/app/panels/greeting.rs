@@ -34,7 +34,7 @@ const LEAST_FOR_THUMBNAILS: Vec2 = vec2(640.0, 500.0);
 const THUMBNAIL: Vec2 = vec2(144.0, 90.0);
 
 /// Returns whether the greeting is shown over this picture.
-pub(super) fn is_shown(state: &State, picture: Rect) -> bool {
+pub(crate) fn is_shown(state: &State, picture: Rect) -> bool {
     let is_small = picture.size().min_elem() < LEAST_SIDE || picture.area() < LEAST_AREA;
     state.greeting && !state.lab.away && state.overlays && !is_small
 }

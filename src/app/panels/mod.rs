@@ -8,7 +8,7 @@ mod about;
 pub(crate) mod arrange;
 mod cheat_sheet;
 mod dial;
-mod greeting;
+pub(crate) mod greeting;
 mod history;
 mod lab;
 mod lesson_card;

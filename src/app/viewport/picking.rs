@@ -7,7 +7,7 @@ use glam::{DMat4, DVec2, DVec3, DVec4};
 use super::marks::Projection;
 use crate::app::state::State;
 use marraztu_core::base::image::Size;
-use marraztu_core::scene::{Object, ObjectId, Shape, dvec3};
+use marraztu_core::scene::{Object, ObjectId, dvec3};
 
 /// The transformations from an object's mesh to the picture.
 struct Onto {
@@ -81,9 +81,8 @@ pub(crate) fn objects_within(
         vertices.any(|p| onto.place(p).is_some_and(|at| area.contains(at))) || at_points()
     };
     let found: Vec<_> = drawn(state).filter(|(_, object)| touches(object)).collect();
-    let is_ground = |object: &Object| Shape::of(&object.model) == Some(Shape::Ground);
-    let only_ground = found.iter().all(|(_, object)| is_ground(object));
-    let counts = |(_, object): &(ObjectId, &Object)| only_ground || !is_ground(object);
+    let only_ground = found.iter().all(|(_, object)| object.is_ground());
+    let counts = |(_, object): &(ObjectId, &Object)| only_ground || !object.is_ground();
     found.into_iter().filter(counts).map(|(id, _)| id).collect()
 }
 

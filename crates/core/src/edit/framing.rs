@@ -16,7 +16,7 @@ use super::{Change, GesturePhase, Refusal, set_transform};
 use crate::base::math;
 use crate::scene::{
     Camera, CameraMode, Command, Intrinsics, Item, Lens, Object, ObjectId, Observer, Pose,
-    Projection, Scene, Shape, Tracked, View,
+    Projection, Scene, Tracked, View,
 };
 
 /// The bounding sphere to frame.
@@ -74,17 +74,13 @@ pub fn selection(scene: &Scene, view: &View) -> Change {
     objects(scene, view, &[id])
 }
 
-/// Frames everything visible (key Home). A ground reaches far beyond what stands on it, and is only
-/// framed if there is nothing else.
+/// Frames everything visible (key Home). A ground is framed only if nothing else is visible.
 ///
 /// # Errors
 /// If nothing is visible.
 pub fn all(scene: &Scene, view: &View) -> Change {
     let all = shown(scene, view);
-    let is_ground = |id: &ObjectId| {
-        let object = scene.objects.get(*id);
-        object.is_some_and(|object| Shape::of(&object.model) == Some(Shape::Ground))
-    };
+    let is_ground = |id: &ObjectId| scene.objects.get(*id).is_some_and(Object::is_ground);
     let others: Vec<_> = all.iter().copied().filter(|id| !is_ground(id)).collect();
     objects(scene, view, if others.is_empty() { &all } else { &others })
 }

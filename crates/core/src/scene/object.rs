@@ -6,7 +6,7 @@ use glam::{DMat3, DMat4, DVec3};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Bounds, FileMaterial, MapKind, MaterialChoice, Model, PresetId, SurfaceMap, SurfaceMaps,
+    Bounds, FileMaterial, MapKind, MaterialChoice, Model, PresetId, Shape, SurfaceMap, SurfaceMaps,
     Texture, Tracked,
 };
 use crate::base::math::{self, Axis};
@@ -127,6 +127,12 @@ impl Object {
             edge_color: model.edge_color.unwrap_or(Color::WHITE),
             model,
         }
+    }
+
+    /// Returns whether the object is the shape of a ground, which reaches far beyond what stands on
+    /// it.
+    pub fn is_ground(&self) -> bool {
+        Shape::of(&self.model) == Some(Shape::Ground)
     }
 
     /// Returns whether both sides of the object's faces are drawn and lit.

@@ -1,4 +1,4 @@
-//! Lights the faces of a tile whose colours are not yet in the table of the frame.
+//! Lights the faces of a tile that are missing in the table of the frame.
 
 use fearless_simd::Simd;
 use prefetch_index::prefetch_index;

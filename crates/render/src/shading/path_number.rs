@@ -1,4 +1,4 @@
-//! The paths that pictures in f32 have beside lists.
+//! The paths of pictures in f32 besides lists.
 
 use super::context::Group;
 use super::full_blocks::{Blocks, Canvas};
@@ -6,7 +6,7 @@ use super::interpolated::ShadingNumber;
 use super::runs::Runs;
 use super::shader::Shader;
 
-/// A number type in which tiles are coloured. The defaults are those of f64, which colours all
+/// A number type for colouring tiles. The defaults are for f64, which colours all
 /// pixels from lists: they handle nothing.
 #[expect(unused_variables, reason = "the defaults read nothing")]
 pub(crate) trait PathNumber: ShadingNumber {
