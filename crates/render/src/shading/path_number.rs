@@ -6,8 +6,8 @@ use super::interpolated::ShadingNumber;
 use super::runs::Runs;
 use super::shader::Shader;
 
-/// A number type for colouring tiles. The defaults are for f64, which colours all
-/// pixels from lists: they handle nothing.
+/// A number type for colouring tiles. The defaults are for f64, which colours all pixels from
+/// lists: they handle nothing.
 #[expect(unused_variables, reason = "the defaults read nothing")]
 pub(crate) trait PathNumber: ShadingNumber {
     /// Colours fully covered blocks without a list of fragments, if their path allows it. Returns
