@@ -1,8 +1,9 @@
 //! Attributes the error of one pixel to the axes of accuracy.
 //!
-//! The reference is the ideal, as wherever errors of a picture are shown. The picture is drawn again
-//! with one axis at a time at its most exact choice. The reduction of the error is the share of that
-//! axis. Shares need not add up to the error, since errors may cancel or depend on each other.
+//! The reference is the ideal, as wherever errors of a picture are shown. The picture is drawn
+//! again with one axis at a time at its most exact choice. The reduction of the error is the share
+//! of that axis. Shares need not add up to the error, since errors may cancel or depend on each
+//! other.
 
 use serde::Serialize;
 
