@@ -148,9 +148,7 @@ impl App {
         }
         self.replace(state);
         self.state.set_window(&window);
-        if self.settle_recovered(path) {
-            self.state.tell(Some("Recovered the unsaved work".to_owned()));
-        } else {
+        if !self.settle_recovered(path) {
             self.note_recent(path);
         }
         let objects: Vec<_> = self.state.scene.objects.ids().collect();
