@@ -171,7 +171,7 @@ fn ids_name_what_the_editor_picks_and_normals_are_those_that_light_uses() {
         let (worlds, cameras) = (vectors(&layers, Layer::Normal), vectors(&camera, Layer::Normal));
         for i in 0..SIZE.area() {
             let [x, y] = [i % SIZE.width, i / SIZE.width];
-            let picked = renderer.hit(x, y).map(|hit| (hit.item, hit.polygon));
+            let picked = renderer.hit(x, y).and_then(|hit| Some((hit.item, hit.polygon?)));
             let id = usize::try_from(layers.ids(Layer::Object)[i]).unwrap();
             let polygon = u32::try_from(layers.ids(Layer::Polygon)[i]).unwrap();
             let shown = id

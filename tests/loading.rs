@@ -124,17 +124,33 @@ fn bytes_that_are_not_utf_8_are_read_as_latin_1() {
 }
 
 #[test]
-fn lines_and_points_are_left_out_and_counted() {
-    let loaded = read(&triangle_and("l 1 2\nl 2 3 1\np 1\nf 1 2 3\n"));
-    assert_eq!(loaded.model.mesh.polygon_count(), 1);
+fn lines_and_points_are_read_with_their_parts() {
+    let text = "l 1 2\ng b\nl 2/1 3/1 -3 # back\np 1 3\nl 2 2\nf 1 2 3\nl 1\np\nl 1 9\np x\n";
+    let loaded = read(&triangle_and(text));
+    let mesh = &loaded.model.mesh;
+    assert_eq!(mesh.polygon_count(), 1);
+    let strokes: Vec<_> = mesh.strokes().iter().map(|it| (it.ends, it.part)).collect();
+    let want = [([0, 1], 0), ([1, 2], 1), ([2, 0], 1), ([0, 0], 1), ([2, 2], 1)];
+    assert_eq!(strokes, want);
     let texts: Vec<&str> = loaded.findings.iter().map(|f| f.text.as_str()).collect();
     assert_eq!(
         texts,
         [
-            "2 statements \"l\" are skipped: only faces are drawn (first: line 4)",
-            "a statement \"p\" is skipped: only faces are drawn (line 6)",
+            "2 lines or points refer to vertices that the file does not have (the first: \"x\") \
+             and are skipped (first: line 13)",
+            "2 lines have fewer than two vertices, or points none, and are skipped (first: line 10)",
         ]
     );
+}
+
+#[test]
+fn a_line_to_a_lost_vertex_is_skipped_and_the_others_keep_theirs() {
+    let loaded = read("v 0 0 0\nv x\nv 1 0 0\nv 0 1 0\nl 1 3\nl 1 2\nl 3 4\n");
+    let ends: Vec<_> = loaded.model.mesh.strokes().iter().map(|it| it.ends).collect();
+    assert_eq!(ends, [[0, 1], [1, 2]]);
+    assert_eq!(kinds(&loaded.findings), [FindingKind::VertexUnreadable, FindingKind::StrokeVertex]);
+    // Lines are enough: the file is not refused, and their vertices count as used.
+    assert!(loaded.model.mesh.unused_vertices().is_empty());
 }
 
 #[test]
@@ -167,7 +183,8 @@ fn texture_coordinates_and_normals_stay_with_their_corners_if_others_lack_them()
 #[test]
 fn vertices_keep_their_numbers_whether_faces_use_them_or_not() {
     let loaded = read("v 9 9 9\nv 0 0 0\nv 1 0 0\nv 8 8 8\nv 0 1 0\nv 7 7 7\nf 5 2 3\n");
-    let text = "3 vertices are not used by any face and do not affect size and centre";
+    let text =
+        "3 vertices are not used by any face, line or point and do not affect size and centre";
     assert_eq!(only(&loaded), (FindingKind::VertexUnused, text));
     let mesh = loaded.model.mesh;
     assert_eq!(mesh.positions().len(), 6);
@@ -491,10 +508,11 @@ fn unknown_statements_are_passed_over_and_listed_by_name() {
 }
 
 #[test]
-fn a_file_of_vertices_alone_loads_and_says_that_it_draws_nothing() {
+fn a_file_of_vertices_alone_is_read_as_points() {
     let loaded = read(TRIANGLE);
-    assert_eq!(loaded.model.mesh.positions().len(), 3);
-    assert_eq!(only(&loaded).0, FindingKind::NoFaces);
+    assert_eq!(loaded.model.mesh.stroke_counts(), [0, 3]);
+    assert_eq!(only(&loaded).0, FindingKind::OnlyVertices);
+    assert!(describe(&loaded).contains("points          3"));
     assert!(describe(&loaded).contains("closed          no: there are no edges"));
 }
 
@@ -640,7 +658,10 @@ fn a_line_without_end_is_refused_in_a_short_message() {
         assert!(message.len() < 200, "{} signs", message.len());
     }
     let numbers = format!("v{}\n", " 1".repeat(2_000_000));
-    assert_eq!(kinds(&read(&numbers).findings), [FindingKind::ExtraNumbers, FindingKind::NoFaces]);
+    assert_eq!(
+        kinds(&read(&numbers).findings),
+        [FindingKind::ExtraNumbers, FindingKind::OnlyVertices]
+    );
 }
 
 #[test]

@@ -166,6 +166,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         vertex_normals: true,
         normal_length: NormalLength::BySize,
         wide_lines: true,
+        line_width: 2.5,
         marks: false,
         time: a,
     };

@@ -384,6 +384,22 @@ impl Scene {
     }
 
     #[getter]
+    fn line_width(&self) -> PyResult<f64> {
+        Ok(self.lock()?.view.line_width)
+    }
+
+    #[setter]
+    fn set_line_width(&self, pixels: f64) -> PyResult<()> {
+        let widths = View::LINE_WIDTHS;
+        if !widths.contains(&pixels) {
+            let [least, most] = [widths.start(), widths.end()];
+            let text = format!("line_width is from {least} to {most} pixels");
+            return Err(Failure::Value(text).into());
+        }
+        self.set_view(|view| view.line_width = pixels)
+    }
+
+    #[getter]
     fn exposure(&self) -> PyResult<f64> {
         Ok(self.lock()?.view.exposure)
     }

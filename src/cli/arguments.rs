@@ -191,6 +191,9 @@ pub(crate) struct Seeing {
     /// white
     #[arg(long, value_name = "STOPS", allow_negative_numbers = true, value_parser = exposure)]
     pub(crate) exposure: Option<Exposure>,
+    /// The width in pixels of the lines of models, and the diameter of their points: 1 to 64 (1.5*)
+    #[arg(long, value_name = "PIXELS", value_parser = line_width)]
+    pub(crate) line_width: Option<f64>,
     /// The colour of the background: "0,0,179", "#0000b3", "#fff", or a name such as "white"
     #[arg(long, value_name = "COLOUR", value_parser = color)]
     pub(crate) background: Option<Color>,
@@ -228,6 +231,12 @@ pub(crate) enum Exposure {
     Stops(f64),
     /// Fitted to the picture.
     Fit,
+}
+
+fn line_width(text: &str) -> Result<f64, String> {
+    let widths = View::LINE_WIDTHS;
+    let width = text.parse().ok().filter(|width| widths.contains(width));
+    width.ok_or_else(|| format!("write pixels from {} to {}", widths.start(), widths.end()))
 }
 
 fn exposure(text: &str) -> Result<Exposure, String> {

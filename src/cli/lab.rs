@@ -236,7 +236,7 @@ fn explain_pixel(studio: &mut Studio, settings: &Settings, at: [usize; 2]) -> Re
     };
     studio.draw(settings);
     let seen = match studio.seen(at) {
-        Some((name, polygon)) => format!("  shows  polygon {polygon} of {name}"),
+        Some(seen) => format!("  shows  {seen}"),
         None => "  shows  the background".to_owned(),
     };
     let mut lines = attribution.lines();

@@ -362,6 +362,7 @@ pub(super) fn look(stage: &mut Stage, seeing: &Seeing, aim: &Aim) -> Result<(), 
     view.back_faces |= seeing.back_faces;
     view.face_normals |= seeing.face_normals;
     view.vertex_normals |= seeing.vertex_normals;
+    view.line_width = seeing.line_width.unwrap_or(view.line_width);
     view.marks = seeing.helpers.unwrap_or(view.marks && !stage.models_alone);
     // Exposure comes last, since fitting it draws the finished scene.
     match seeing.exposure {

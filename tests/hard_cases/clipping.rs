@@ -181,7 +181,7 @@ fn case_13_two_faces_that_share_a_cut_edge_stay_together() {
                 plan_frame(&Shot::new(&scene, &view, &Settings::default(), Size::new(32, 32)));
             let mut renderer = Renderer::default();
             renderer.render(&plan);
-            let mut face = |x: usize, y: usize| renderer.hit(x, y).map(|hit| hit.polygon);
+            let mut face = |x: usize, y: usize| renderer.hit(x, y).and_then(|hit| hit.polygon);
             (0..64).map(|i| face(i % 8 * 4, i / 8 * 4)).collect::<Vec<_>>()
         };
         let (one, other) = (shown([&[0, 1, 3], &[1, 2, 3]]), shown([&[1, 2, 3], &[0, 1, 3]]));

@@ -444,7 +444,7 @@ fn case_36_the_order_of_faces_shows_by_their_numbers_alone() {
     let mut renderer = Renderer::default();
     renderer.render(&plan);
     for i in 0..SIDE {
-        let hit = renderer.hit(i, i).map(|hit| hit.polygon);
+        let hit = renderer.hit(i, i).and_then(|hit| hit.polygon);
         assert_ne!(hit, Some(1), "the lower number of what is equally near");
     }
 }

@@ -94,6 +94,11 @@ fn describe_mesh(mesh: &Mesh, text: &mut Text) {
     text.line("vertices", &grouped(mesh.positions().len()));
     text.line("faces", &faces(mesh));
     text.line("triangles", &grouped(mesh.triangle_count()));
+    for (label, count) in ["lines", "points"].into_iter().zip(mesh.stroke_counts()) {
+        if count > 0 {
+            text.line(label, &grouped(count));
+        }
+    }
     match mesh.bounds() {
         None => text.line("box", "none"),
         Some(bounds) => {
@@ -196,19 +201,30 @@ fn closed(mesh: &Mesh) -> String {
 
 fn describe_parts(model: &Model, text: &mut Text) {
     let parts = model.mesh.parts();
-    let mut counts = vec![0; parts.len()];
+    let mut counts = vec![[0; 3]; parts.len()];
     for part in model.mesh.polygon_parts() {
-        counts[*part as usize] += 1;
+        counts[*part as usize][0] += 1;
+    }
+    for stroke in model.mesh.strokes() {
+        counts[stroke.part as usize][if stroke.is_point() { 2 } else { 1 }] += 1;
     }
     text.head("parts", parts.len());
-    for (part, count) in parts.iter().zip(counts).take(MOST) {
-        let faces = number_of(count, "face");
+    for (part, counts) in parts.iter().zip(counts).take(MOST) {
+        let [faces, lines, points] = counts;
+        let strokes = [(lines, "line"), (points, "point")];
+        let mut content = Vec::new();
+        if faces > 0 || lines + points == 0 {
+            content.push(number_of(faces, "face"));
+        }
+        let some = strokes.into_iter().filter(|(count, _)| *count > 0);
+        content.extend(some.map(|(count, name)| number_of(count, name)));
+        let content = content.join(", ");
         let material = part.material.and_then(|i| model.materials.get(i as usize));
         let material = material.map_or_else(
             || "no material: silver".to_owned(),
             |material| format!("material \"{}\"", material.name),
         );
-        text.item(&format!("\"{}\": {faces}, {material}", part.name));
+        text.item(&format!("\"{}\": {content}, {material}", part.name));
     }
     text.more(parts.len());
 }

@@ -54,8 +54,8 @@ kinds! {
         "the word \"@\" is not a statement of STL and is ignored",
         "# words (the first: \"@\") are not statements of STL and are ignored";
     VertexUnused:
-        "a vertex is not used by any face and does not affect size and centre",
-        "# vertices are not used by any face and do not affect size and centre";
+        "a vertex is not used by any face, line or point and does not affect size and centre",
+        "# vertices are not used by any face, line or point and do not affect size and centre";
     NumberOdd [Joined]:
         "the number \"@\" is written in an unusual way and is read nevertheless",
         "# statements have numbers that are written in an unusual way (the first: \"@\") and are \
@@ -82,9 +82,13 @@ kinds! {
         "a smoothing group is neither a number nor \"on\" or \"off\" (\"@\") and is taken as off",
         "# smoothing groups are neither numbers nor \"on\" or \"off\" (such as \"@\") and \
          are taken as off";
-    LineOrPoint:
-        "a statement \"@\" is skipped: only faces are drawn",
-        "# statements \"@\" are skipped: only faces are drawn";
+    StrokeVertex [Joined, Loss]:
+        "a line or point refers to vertex \"@\", which the file does not have, and is skipped",
+        "# lines or points refer to vertices that the file does not have (the first: \"@\") and \
+         are skipped";
+    StrokeShort:
+        "a line has fewer than two vertices, or a point none, and is skipped",
+        "# lines have fewer than two vertices, or points none, and are skipped";
     FreeForm:
         "a statement of a free-form curve or surface is skipped: only polygons are drawn",
         "# statements of free-form curves and surfaces are skipped: only polygons are drawn";
@@ -145,7 +149,7 @@ kinds! {
     NormalsAgainst [Loss]:
         "the normals of a face point against its winding; --no-file-normals ignores them",
         "the normals of # faces point against their winding; --no-file-normals ignores them";
-    NoFaces [Loss]: "the file has vertices but no faces: it draws nothing";
+    OnlyVertices: "the file has only vertices: they are drawn as points";
     MtlMissing [Loss]: "the material file \"@\" was not found";
     MtlRenamed: "the material file \"@\" was not found; the one with the model's name is used";
     MtlOfModel: "the file names materials but no material file; \"@\" is used";

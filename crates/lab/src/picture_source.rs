@@ -122,11 +122,14 @@ impl Studio {
         &self.shot
     }
 
-    /// Returns the name of the item at a pixel of the last picture, and the number of the polygon,
-    /// from 1.
-    pub fn seen(&mut self, [x, y]: [usize; 2]) -> Option<(String, u32)> {
+    /// Says what a pixel of the last picture shows, such as "polygon 12 of chair", counted from 1.
+    pub fn seen(&mut self, [x, y]: [usize; 2]) -> Option<String> {
         let hit = self.renderer.hit(x, y)?;
-        Some((self.shot.scene.name(hit.item)?.to_owned(), hit.polygon + 1))
+        let name = self.shot.scene.name(hit.item)?;
+        Some(match hit.polygon {
+            Some(polygon) => format!("polygon {} of {name}", polygon + 1),
+            None => format!("a line or point of {name}"),
+        })
     }
 }
 

@@ -163,6 +163,9 @@ impl FramePlan {
     fn count_line(&self, frame: &ScreenGeometry, line: LineNumber, counts: &mut Counts) {
         let Some((draw, _)) = frame.line_seen(self, line) else { return };
         let draw = &self.draws[draw as usize];
+        if frame.stroke(line).is_some() {
+            return counts.add(Effect::Strokes, draw.item, 1);
+        }
         if frame.is_edge(line) {
             return counts.add(Effect::Edges, draw.item, 1);
         }

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::frame::draw::{Draw, Lines};
 use crate::frame::{FramePlan, Viewport};
-use crate::screen::coverage::PixelBox;
+use crate::screen::coverage::{PixelBox, SUBPIXELS};
 use crate::screen::tiles::{TILE, tiles_of};
 use marraztu_core::base::image::Size;
 use marraztu_core::base::math::same_bits;
@@ -178,6 +178,7 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
         view_from_world,
         clip_from_view,
         line_width,
+        stroke_width,
         lights: _,
         shadows,
         draws: _,
@@ -197,6 +198,7 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
         || *transparency != before.transparency
         || *variants != before.variants
         || *line_width != before.line_width
+        || *stroke_width != before.stroke_width
         || *rules != before.rules;
     // The first reason that applies is reported.
     match () {
@@ -227,7 +229,8 @@ fn reach(draw: &Draw, plan: &FramePlan) -> PixelBox {
     }
     let corners = bounds.corners().map(|corner| draw.clip_from_object * corner.extend(1.0));
     // The margin is the width of lines.
-    around(plan, &corners, f64::from(plan.line_width)).unwrap_or(all)
+    let width = plan.line_width.max(plan.stroke_width / SUBPIXELS + 1);
+    around(plan, &corners, f64::from(width)).unwrap_or(all)
 }
 
 /// Bounds the pixels that the convex hull of points in clip space may cover, plus a margin. `None`

@@ -31,6 +31,7 @@ class Mesh:
 class Scene:
     background: tuple[int, int, int]
     exposure: float
+    line_width: float
     edges: str
     @staticmethod
     def load(path: str) -> tuple[Scene, list[str]]: ...

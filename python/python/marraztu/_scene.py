@@ -245,6 +245,15 @@ class Scene:
         self._scene.background = bytes_of(color)
 
     @property
+    def line_width(self) -> float:
+        """The width in pixels of the lines of models, and the diameter of their points."""
+        return self._scene.line_width
+
+    @line_width.setter
+    def line_width(self, pixels: float) -> None:
+        self._scene.line_width = pixels
+
+    @property
     def exposure(self) -> float:
         """The exposure in stops: each doubles the light."""
         return self._scene.exposure

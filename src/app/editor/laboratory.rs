@@ -331,9 +331,7 @@ impl App {
         let work = move |_: &io::Progress| {
             let blame = attribute(&mut studio, &settings, at)?;
             studio.draw(&settings);
-            let seen =
-                studio.seen(at).map(|(name, polygon)| format!("polygon {polygon} of {name}"));
-            Some((blame, seen))
+            Some((blame, studio.seen(at)))
         };
         match Task::start(ctx, "Explaining a pixel".to_owned(), work) {
             Ok(task) => self.lab.blame = Some(task),

@@ -45,15 +45,15 @@ const SIZE: Size = Size::new(800, 600);
 
 impl App {
     /// Starts to search for objects among these that are not visible in the current scene. Objects
-    /// without faces are skipped, since their files already have a finding about it.
+    /// without anything to draw are skipped, since their files already have a finding about it.
     pub(crate) fn look_for_unseen(
         &mut self,
         ctx: &Context,
         ids: impl IntoIterator<Item = ObjectId>,
     ) {
         let objects = &self.state.scene.objects;
-        let has_faces = |object: &Object| object.model.mesh.polygon_count() > 0;
-        let ids = ids.into_iter().filter(|id| objects.get(*id).is_some_and(has_faces));
+        let has_shapes = |object: &Object| object.model.mesh.has_shapes();
+        let ids = ids.into_iter().filter(|id| objects.get(*id).is_some_and(has_shapes));
         self.searches.waiting.push((ids.collect(), None));
         ctx.request_repaint();
     }
@@ -168,7 +168,7 @@ fn notice(state: &State, (id, size): (ObjectId, Size), why: &Unseen) -> Option<N
         | Unseen::LeftOut(_)
         | Unseen::Unexamined => (NoticeKind::Unseen, Offer::Frame(id)),
     };
-    let has_faces = object.model.mesh.polygon_count() > 0;
+    let has_shapes = object.model.mesh.has_shapes();
     if kind != NoticeKind::TurnedAway && out_of_sight(state, object, size) {
         let notice = Notice::new(NoticeKind::Unseen, format!("{name}{OUT_OF_VIEW}"));
         return Some(notice.offering(Some(Offer::Frame(id))));
@@ -179,7 +179,7 @@ fn notice(state: &State, (id, size): (ObjectId, Size), why: &Unseen) -> Option<N
         return Some(notice.offering(Some(Offer::Frame(id))));
     }
     let notice = Notice::new(kind, format!("Nothing of {name} is visible: {why}"));
-    Some(notice.offering(Some(offer).filter(|_| has_faces)))
+    Some(notice.offering(Some(offer).filter(|_| has_shapes)))
 }
 
 /// Returns whether the observer is inside the box of an object, which is not flat.

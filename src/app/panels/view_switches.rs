@@ -51,6 +51,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
             for action in Group::OVER_PICTURE {
                 action_switch(ui, state, requests, action);
             }
+            line_width_ui(ui, state, requests);
         });
         section(ui, "Light", true, |ui| {
             slots_ui(ui, state, requests);
@@ -154,7 +155,23 @@ fn background_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     });
 }
 
-/// The width of the exposure field, in points.
+/// Shows the width of the lines of models, if any model has lines or points.
+fn line_width_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
+    let mut objects = state.scene.objects.iter();
+    if objects.all(|(_, object)| object.model.mesh.strokes().is_empty()) {
+        return;
+    }
+    row(ui, "Line width", |ui| {
+        let hint = "The width of the lines of models, and the diameter of their points";
+        let field =
+            Number::new("Line width", hint).suffix(" px").speed(0.02).range(View::LINE_WIDTHS);
+        if let Some((line_width, _)) = field.ui(ui, EXPOSURE_WIDTH, state.view.line_width) {
+            change_view(requests, state, |view| view.line_width = line_width);
+        }
+    });
+}
+
+/// The width of the exposure field and of the field of the line width, in points.
 const EXPOSURE_WIDTH: f32 = 84.0;
 
 /// Shows the exposure, with a button that fits it to the picture.

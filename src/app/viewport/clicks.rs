@@ -92,7 +92,7 @@ impl Viewport {
             ItemId::Object(id)
                 if state.view.polygons.is_some() && state.view.object == Some(id) =>
             {
-                Request::SelectPolygon(hit.polygon)
+                hit.polygon.map_or(Request::Select(hit.item), Request::SelectPolygon)
             }
             ItemId::Object(_) if again && state.view.polygons.is_none() => {
                 let Some((rect, size)) = self.place else { return Request::Select(hit.item) };

@@ -37,6 +37,7 @@ pub use mesh::accelerator::{Accelerator, AcceleratorPlace};
 pub use mesh::cache::{Derived, Facet, NormalSource};
 pub use mesh::edges::Edge;
 pub use mesh::outlines::CornerLists;
+pub use mesh::strokes::Stroke;
 pub use mesh::{
     ClosedBodies, Corner, Mesh, MeshError, MeshSource, NONE, Part, PartNames, Point, SourceCorner,
     Triangle, dvec3, newell, split_positions,

@@ -50,6 +50,9 @@ pub struct View {
     pub normal_length: NormalLength,
     /// Whether lines are two pixels wide, for screens of high density.
     pub wide_lines: bool,
+    /// The width in pixels of the lines of models, and the diameter of their points. Where
+    /// `wide_lines` is set, they are twice as wide.
+    pub line_width: f64,
     /// Whether the markers of cameras and bulbs are drawn.
     pub marks: bool,
     /// The exposure of lit surfaces in stops: each stop doubles the light, and 0 changes nothing.
@@ -61,6 +64,12 @@ pub struct View {
 impl View {
     /// The largest exposure in both directions.
     pub const MOST_EXPOSURE: f64 = 10.0;
+
+    /// The first width of the lines of models, in pixels.
+    pub const LINE_WIDTH: f64 = 1.5;
+
+    /// The smallest and the largest width of the lines of models, in pixels.
+    pub const LINE_WIDTHS: std::ops::RangeInclusive<f64> = 1.0..=64.0;
 
     /// Returns the factor that the exposure gives to all light.
     pub fn light_factor(&self) -> f64 {
@@ -97,6 +106,7 @@ impl View {
             vertex_normals: false,
             normal_length: NormalLength::Units,
             wide_lines: false,
+            line_width: Self::LINE_WIDTH,
             marks: true,
             exposure: 0.0,
             time: 0.0,

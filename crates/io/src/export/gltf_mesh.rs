@@ -16,9 +16,9 @@ use super::gltf_buffer::{Vertex, Vertices, columns, is_single, single, single3};
 use super::gltf_opacity::Layout;
 use super::gltf_surface::linear;
 use super::gltf_texture::layouts;
-use super::look::{Maps, has_colors, polygons};
+use super::look::{Looks, Maps, has_colors, polygons, strokes};
 use marraztu_core::base::math;
-use marraztu_core::scene::{MapKind, Mesh, NONE, NormalSource, Object, Triangle, dvec3};
+use marraztu_core::scene::{MapKind, Mesh, NONE, NormalSource, Object, Stroke, Triangle, dvec3};
 
 /// The largest scale of a placement that is written as a matrix: its entries are then accurate to
 /// 1e-6.
@@ -30,16 +30,40 @@ type Name<'a> = Option<&'a str>;
 /// The meshes of an object of a file, each with its group.
 type Groups<'a> = Vec<(Name<'a>, Index<gltf_json::Mesh>)>;
 
-/// The triangles of an object, by piece and look.
+/// The triangles and strokes of an object, by piece and look.
 #[derive(Default)]
 struct Sorted<'a> {
-    /// The objects and groups of the file, in the order of their first faces.
+    /// The objects and groups of the file, in the order of their first faces, or strokes.
     pieces: Vec<(Name<'a>, Name<'a>)>,
     numbers: HashMap<(Name<'a>, Name<'a>), usize>,
     /// The piece and the look of each part, with and without maps, filled in when a triangle uses
     /// it.
     parts: HashMap<(u32, Maps), (usize, usize)>,
     triangles: BTreeMap<(usize, usize), Vec<usize>>,
+    /// The lines, and the points.
+    strokes: [BTreeMap<(usize, usize), Vec<&'a Stroke>>; 2],
+}
+
+impl<'a> Sorted<'a> {
+    /// Returns the piece and the look of a part.
+    fn key(
+        &mut self,
+        looks: &mut Looks,
+        object: &'a Object,
+        (part, maps): (u32, Maps),
+    ) -> (usize, usize) {
+        let Self { pieces, numbers, parts, .. } = self;
+        // Looks are expensive to build, so each part is resolved once.
+        *parts.entry((part, maps)).or_insert_with(|| {
+            let names = object.model.mesh.part_names(part);
+            let names = (names.object.as_deref(), names.group.as_deref());
+            let piece = *numbers.entry(names).or_insert_with(|| {
+                pieces.push(names);
+                pieces.len() - 1
+            });
+            (piece, looks.of_part(object, part, maps))
+        })
+    }
 }
 
 impl Writer<'_> {
@@ -51,7 +75,7 @@ impl Writer<'_> {
         let objects = self.meshes(object, &baked);
         let node = match &objects[..] {
             [] => {
-                self.notes.push(format!("{} shows no faces: it is an empty node", object.name));
+                self.notes.push(format!("{} shows nothing: it is an empty node", object.name));
                 self.named(&object.name)
             }
             [(name, groups)] => {
@@ -104,10 +128,13 @@ impl Writer<'_> {
     /// Writes the meshes of an object, by the objects and groups of its file.
     fn meshes<'a>(&mut self, object: &'a Object, baked: &DMat4) -> Vec<(Name<'a>, Groups<'a>)> {
         // One primitive per piece and look, since a primitive has one material.
-        let Sorted { pieces, triangles, .. } = self.sorted(object);
+        let Sorted { pieces, triangles, strokes, .. } = self.sorted(object);
         let mut by_piece: Vec<Vec<Primitive>> = pieces.iter().map(|_| Vec::new()).collect();
         for ((piece, look), triangles) in triangles {
             by_piece[piece].extend(self.primitive(object, baked, look, &triangles));
+        }
+        for ((piece, look), strokes) in strokes.into_iter().flatten() {
+            by_piece[piece].push(self.stroke_primitive(object, baked, look, &strokes));
         }
         let mut objects: Vec<(Name<'a>, Groups<'a>)> = Vec::new();
         let mut numbers = HashMap::new();
@@ -140,18 +167,12 @@ impl Writer<'_> {
             let part = mesh.polygon_parts()[polygon as usize];
             let has_uvs = corners.iter().all(|it| mesh.corners()[*it as usize].uv != NONE);
             let maps = if has_uvs { Maps::Kept } else { Maps::LeftOut };
-            let Sorted { pieces, numbers, parts, .. } = &mut sorted;
-            // Looks are expensive to build, so each part is resolved once.
-            let key = *parts.entry((part, maps)).or_insert_with(|| {
-                let names = mesh.part_names(part);
-                let names = (names.object.as_deref(), names.group.as_deref());
-                let piece = *numbers.entry(names).or_insert_with(|| {
-                    pieces.push(names);
-                    pieces.len() - 1
-                });
-                (piece, self.looks.of_part(object, part, maps))
-            });
+            let key = sorted.key(&mut self.looks, object, (part, maps));
             sorted.triangles.entry(key).or_default().push(triangle);
+        }
+        for stroke in strokes(object) {
+            let key = sorted.key(&mut self.looks, object, (stroke.part, Maps::LeftOut));
+            sorted.strokes[usize::from(stroke.is_point())].entry(key).or_default().push(stroke);
         }
         sorted
     }
@@ -238,7 +259,7 @@ impl Writer<'_> {
 }
 
 /// Returns a position in the space of the node.
-fn placed(baked: &DMat4, mesh: &Mesh, position: u32) -> [f32; 3] {
+pub(super) fn placed(baked: &DMat4, mesh: &Mesh, position: u32) -> [f32; 3] {
     let position = mesh.positions()[position as usize];
     if *baked == DMat4::IDENTITY {
         return position;

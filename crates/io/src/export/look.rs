@@ -11,7 +11,7 @@ use super::names::{Names, on_one_line};
 use super::part_look::{Look, RoughMetal};
 use marraztu_core::base::Shared;
 use marraztu_core::scene::{
-    FileMaterial, MapKind, Material, MaterialChoice, Object, PresetId, Surface, Texture,
+    FileMaterial, MapKind, Material, MaterialChoice, Object, PresetId, Stroke, Surface, Texture,
     UndrawnMap, Wrap,
 };
 
@@ -212,6 +212,12 @@ pub(super) fn tint(object: &Object) -> [f64; 3] {
 /// Returns whether an object shows its vertex colours.
 pub(super) fn has_colors(object: &Object) -> bool {
     object.surface != Surface::Material && !object.model.mesh.colors().is_empty()
+}
+
+/// Returns the lines and points of an object that are exported.
+pub(super) fn strokes(object: &Object) -> impl Iterator<Item = &Stroke> {
+    let all = object.model.mesh.strokes().iter();
+    all.filter(|stroke| !object.hidden_parts.contains(&stroke.part))
 }
 
 /// Returns the polygons of an object that are exported.

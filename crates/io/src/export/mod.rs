@@ -10,6 +10,7 @@ mod gltf_lights;
 mod gltf_mesh;
 mod gltf_opacity;
 mod gltf_roughness;
+mod gltf_strokes;
 mod gltf_surface;
 mod gltf_texture;
 mod look;

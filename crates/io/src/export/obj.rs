@@ -16,13 +16,13 @@ use std::ops::Neg;
 use glam::{DMat3, DMat4, DVec3};
 
 use self::called::Names;
-use super::look::{Detail, Looks, has_colors, polygons};
+use super::look::{Detail, Looks, has_colors, polygons, strokes};
 use super::names::companion;
 use super::{Content, ExportOptions};
 use crate::mark::SIGNATURE;
 use crate::stl::has_stl_name;
 use marraztu_core::base::math::{normal_matrix, unit};
-use marraztu_core::scene::{Corner, NONE, Object, Scene, UpAxis, View, dvec3};
+use marraztu_core::scene::{Corner, NONE, Object, Scene, Stroke, UpAxis, View, dvec3};
 
 /// An object counts as far if its distance from the origin exceeds this multiple of its radius.
 const FAR: f64 = 256.0;
@@ -92,14 +92,16 @@ impl Writer {
         let turn = DMat3::from_mat4(object.world_from_object(time));
         self.names.begin(object);
         self.looks.add_file(object);
-        self.names.object_without_faces(object, &mut self.text);
+        self.names.object_without_shapes(object, &mut self.text);
 
-        // With hidden parts, only the vertices of visible faces are written.
+        // With hidden parts, only the vertices of visible faces, lines and points are written.
         let all = object.hidden_parts.is_empty();
         let corners = || polygons(object).flat_map(|polygon| mesh.polygon(polygon));
         let point =
             |corner: &Corner| if object.file_normals { corner.filed } else { corner.smooth };
-        let positions = Numbers::of(mesh.positions().len(), all, corners().map(|it| it.position));
+        let ends = strokes(object).flat_map(|stroke| stroke.ends);
+        let used = corners().map(|it| it.position).chain(ends);
+        let positions = Numbers::of(mesh.positions().len(), all, used);
         let uvs = Numbers::of(mesh.uvs().len(), all, corners().map(|it| it.uv));
         let normals = Numbers::of(mesh.points().len(), false, corners().map(point));
         self.vertices(object, time, &positions);
@@ -136,9 +138,37 @@ impl Writer {
             }
             self.text.push('\n');
         }
+        self.strokes(object, &positions);
         self.positions += positions.used.len();
         self.uvs += uvs.used.len();
         self.normals += normals.used.len();
+    }
+
+    /// Writes lines and points: a statement for each polyline, and for each run of points.
+    fn strokes(&mut self, object: &Object, positions: &Numbers) {
+        let mut last: Option<&Stroke> = None;
+        for stroke in strokes(object) {
+            let goes_on = last.is_some_and(|last| {
+                last.leads_to(stroke)
+                    || (last.is_point() && stroke.is_point() && last.part == stroke.part)
+            });
+            let [from, to] = stroke.ends.map(|end| self.positions + positions.number(end));
+            if !goes_on {
+                if last.is_some() {
+                    self.text.push('\n');
+                }
+                self.names.part(object, stroke.part, &mut self.looks, &mut self.text);
+                let _ = match stroke.is_point() {
+                    true => write!(self.text, "p"),
+                    false => write!(self.text, "l {from}"),
+                };
+            }
+            let _ = write!(self.text, " {to}");
+            last = Some(stroke);
+        }
+        if last.is_some() {
+            self.text.push('\n');
+        }
     }
 
     /// Writes positions, with vertex colours if they are shown.

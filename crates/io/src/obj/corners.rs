@@ -59,7 +59,7 @@ impl Piece {
 }
 
 /// Parses a corner `v`, `v/vt`, `v//vn` or `v/vt/vn`; `None` if it is invalid.
-fn corner(word: &[u8], counts: Counts) -> Option<SourceCorner> {
+pub(super) fn corner(word: &[u8], counts: Counts) -> Option<SourceCorner> {
     let mut places = [NONE; 3];
     for (i, part) in word.split(|b| *b == b'/').enumerate() {
         if i == 3 {

@@ -18,12 +18,14 @@ use super::parts::{NamedPart, Parts};
 use super::piece::{Counts, Piece, Stop};
 use super::rows::{NO_COLOR, Rows};
 use super::sound::{Before, SoundPiece, Totals};
+use super::strokes;
 use crate::error::LoadError;
 use crate::findings::{BYTES_ABOVE, FindingKind, Findings};
 use crate::progress::{Cancelled, Progress};
 use crate::read::MOST_MODEL_BYTES;
 use marraztu_core::base::color::Color;
 use marraztu_core::base::lists::concatenated;
+use marraztu_core::scene::Stroke;
 
 /// The most bytes in a statement.
 const MOST_STATEMENT: usize = 256 << 20;
@@ -47,6 +49,7 @@ pub(super) struct Content {
     /// The first unreadable vertex, with the reason.
     pub(super) refused: Option<(u32, String)>,
     pub(super) faces: Faces,
+    pub(super) strokes: Vec<Stroke>,
     pub(super) parts: Vec<NamedPart>,
     /// Whether any statement `s` sets a smoothing group.
     pub(super) has_smoothing: bool,
@@ -247,6 +250,7 @@ fn joined(
 
     let count = vertices.count;
     let totals = [vertices, uv_totals, normal_totals];
+    let strokes = strokes::sound(&mut pieces, &befores, &totals[0], findings);
     let sound = |(piece, before): (Piece, Before)| SoundPiece::of(piece.faces, &totals, &before);
     let sound: Vec<SoundPiece> = pieces.into_par_iter().zip(befores).map(sound).collect();
     let faces = SoundPiece::joined(sound, findings);
@@ -260,6 +264,7 @@ fn joined(
         vertices,
         refused,
         faces,
+        strokes,
         parts,
         has_smoothing,
         libraries,

@@ -25,7 +25,9 @@ mod quick;
 mod rows;
 mod scan;
 mod sound;
+mod strokes;
 
+use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::io::Read;
 use std::iter;
@@ -108,11 +110,9 @@ fn content(
     progress: &Progress,
 ) -> Result<Content, LoadError> {
     let text = read::in_utf_8(text, file)?;
-    let content = join::content(text, size, file, findings, progress)?;
+    let mut content = join::content(text, size, file, findings, progress)?;
     refuse_nothing(file, &content)?;
-    if content.faces.runs.is_empty() {
-        findings.add(FindingKind::NoFaces, "", None);
-    }
+    content.show_vertices(findings);
     Ok(content)
 }
 
@@ -149,9 +149,7 @@ fn model(
     }
     note_crossings(&mesh, &faces, &mut findings);
     note_orientation(&mesh, &faces, &mut findings);
-    if mesh.polygon_count() > 0 {
-        findings.note_all(FindingKind::VertexUnused, mesh.unused_vertices().len(), None);
-    }
+    findings.note_all(FindingKind::VertexUnused, mesh.unused_vertices().len(), None);
     note_unmapped(&mesh, &materials, &mut findings);
     progress.reached(1, 1)?;
 
@@ -164,9 +162,10 @@ fn model(
     Ok(Loaded { model, findings: joined(findings) })
 }
 
-/// Rejects a file if all of its faces, or all of its vertices, are unusable.
+/// Rejects a file without lines and points if all of its faces, or all of its vertices, are
+/// unusable.
 fn refuse_nothing(file: &str, content: &Content) -> Result<(), LoadError> {
-    if !content.faces.runs.is_empty() {
+    if !content.faces.runs.is_empty() || !content.strokes.is_empty() {
         return Ok(());
     }
     // The unreadable vertex is the root cause, so it is reported before the faces.
@@ -301,7 +300,12 @@ fn source(
         place(&mut positions, &mut normals, options);
     }
     // Splitting off the offset keeps f32 precision far from the origin.
-    let (offset, positions) = split_positions(&positions, &content.faces.corners.positions);
+    let mut used = Cow::from(&content.faces.corners.positions);
+    if !content.strokes.is_empty() {
+        used.to_mut().extend(content.strokes.iter().flat_map(|stroke| stroke.ends));
+    }
+    let (offset, positions) = split_positions(&positions, &used);
+    drop(used);
     let (arities, polygon_parts) = (faces.arities(), faces.parts());
     let smoothing = if has_smoothing {
         Smoothing::Groups(faces.smoothing())
@@ -331,6 +335,7 @@ fn source(
         corners: Vec::new(),
         arities,
         polygon_parts,
+        strokes: content.strokes,
         parts,
         part_names,
         smoothing,

@@ -3,6 +3,7 @@
 use super::faces::{Faces, INHERITED, Run};
 use super::parts::Parts;
 use super::rows::{RowKind, Rows};
+use super::strokes::ReadStroke;
 use crate::findings::Findings;
 use marraztu_core::base::color::Color;
 use marraztu_core::scene::NONE;
@@ -25,6 +26,8 @@ pub(super) struct Piece {
     /// The first unreadable vertex, with the reason.
     pub(super) refused: Option<(u32, String)>,
     pub(super) faces: Faces,
+    /// The lines and points.
+    pub(super) strokes: Vec<ReadStroke>,
     pub(super) parts: Parts,
     /// The smoothing group of the next face: 0 for none, or [`INHERITED`].
     pub(super) smoothing: u32,
@@ -67,6 +70,7 @@ impl Piece {
             normals: Rows::new(RowKind::Normal),
             refused: None,
             faces: Faces::default(),
+            strokes: Vec::new(),
             parts: Parts::default(),
             smoothing: INHERITED,
             libraries: Vec::new(),

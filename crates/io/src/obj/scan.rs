@@ -11,6 +11,7 @@
 use super::faces::INHERITED;
 use super::lines::{Line, Lines, Oddity, excerpt, number, words};
 use super::piece::{Counts, Piece, Stop, Trust};
+use super::strokes::StrokeKind;
 use crate::findings::FindingKind;
 use crate::progress::Cancelled;
 use marraztu_core::base::color::{Color, byte};
@@ -92,9 +93,8 @@ impl Piece {
             }),
             b"mtllib" => self.libraries.push((line.number, line.name())),
             b"c" if self.edge_color(rest) => {}
-            b"l" | b"p" => {
-                self.findings.add(FindingKind::LineOrPoint, &excerpt(keyword), Some(line.number));
-            }
+            b"l" => self.strokes(StrokeKind::Line, rest, line.number)?,
+            b"p" => self.strokes(StrokeKind::Points, rest, line.number)?,
             b"s" => self.smoothing(rest, line.number),
             // Statements that do not change the shape are skipped silently.
             b"mg" | b"bevel" | b"c_interp" | b"d_interp" | b"lod" | b"usemap" | b"maplib"

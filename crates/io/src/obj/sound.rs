@@ -14,7 +14,10 @@ pub(super) struct Totals {
 
 impl Totals {
     /// Returns the index of statement `i` among the kept ones; `None` if it is lost.
-    fn place(&self, i: u32) -> Option<u32> {
+    pub(super) fn place(&self, i: u32) -> Option<u32> {
+        if i >= self.count {
+            return None;
+        }
         match self.lost.binary_search(&i) {
             Ok(_) => None,
             Err(before) => Some(i - u32::try_from(before).unwrap_or(i)),

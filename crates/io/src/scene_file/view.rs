@@ -38,6 +38,8 @@ pub(super) struct FileView {
     pub(super) vertex_normals: bool,
     pub(super) normal_length: NormalLength,
     pub(super) wide_lines: bool,
+    #[serde(skip_serializing_if = "is_first_width")]
+    pub(super) line_width: f64,
     pub(super) marks: bool,
     pub(super) coarse_while_moving: bool,
     #[serde(skip_serializing_if = "is_zero")]
@@ -82,6 +84,7 @@ impl FileView {
             vertex_normals: view.vertex_normals,
             normal_length: view.normal_length,
             wide_lines: view.wide_lines,
+            line_width: view.line_width,
             marks: view.marks,
             coarse_while_moving: window.coarse_while_moving,
             exposure: view.exposure,
@@ -109,6 +112,10 @@ fn is_zero(x: &f64) -> bool {
     *x == 0.0
 }
 
+fn is_first_width(x: &f64) -> bool {
+    *x == View::LINE_WIDTH
+}
+
 /// Reads the view of a scene. Fails with the reason if one of its numbers is invalid.
 pub(super) fn read_view(
     file: &FileView,
@@ -116,7 +123,10 @@ pub(super) fn read_view(
     findings: &mut Findings,
 ) -> Result<View, String> {
     let Steps { translation, rotation, scaling, .. } = file.steps;
-    finite("the view", &[translation, rotation, scaling, file.exposure, file.time])?;
+    finite(
+        "the view",
+        &[translation, rotation, scaling, file.exposure, file.time, file.line_width],
+    )?;
     if translation <= 0.0 || rotation <= 0.0 || scaling <= 1.0 {
         return Err(
             "the steps of the view must be above 0, and the step of scaling above 1".to_owned()
@@ -169,6 +179,7 @@ pub(super) fn read_view(
         vertex_normals: file.vertex_normals,
         normal_length: file.normal_length,
         wide_lines: file.wide_lines,
+        line_width: file.line_width.clamp(*View::LINE_WIDTHS.start(), *View::LINE_WIDTHS.end()),
         marks: file.marks,
         exposure: file.exposure.clamp(-View::MOST_EXPOSURE, View::MOST_EXPOSURE),
         time: file.time,

@@ -38,6 +38,7 @@ impl Compared<'_> {
             polygons,
             filled,
             lines,
+            strokes,
         } = after;
         // The three kinds in order of severity: the first one that applies is reported.
         let moved = !same_bits(clip_from_object, &before.clip_from_object)
@@ -51,6 +52,7 @@ impl Compared<'_> {
             || *culls_opaque != before.culls_opaque
             || *polygons != before.polygons
             || *filled != before.filled
+            || *strokes != before.strokes
             || lines_key(lines) != lines_key(&before.lines)
             || (lines.vertex_normals.is_some() && *normal_source != before.normal_source)
             || self.kinds(part_pipelines, &before.part_pipelines);

@@ -36,6 +36,8 @@ pub(crate) struct Draw {
     pub(crate) polygons: Option<BTreeSet<u32>>,
     pub(crate) filled: bool,
     pub(crate) lines: Lines,
+    /// The lines and points of the mesh, if any are drawn.
+    pub(crate) strokes: Option<DrawnStrokes>,
 }
 
 impl Draw {
@@ -93,6 +95,15 @@ impl Lines {
     /// No lines.
     pub(crate) const NONE: Self =
         Self { edges: false, face_normals: None, vertex_normals: None, color: Color::WHITE };
+}
+
+/// How the lines and points of a mesh are drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct DrawnStrokes {
+    /// The colour of the strokes of each part; `None` for parts that are not drawn.
+    pub(crate) colors: Vec<Option<Color>>,
+    /// Whether the colours of vertices are shown instead.
+    pub(crate) vertex_colors: bool,
 }
 
 /// The stages that colour a surface, in order.

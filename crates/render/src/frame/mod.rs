@@ -56,8 +56,10 @@ pub struct FramePlan {
     pub(crate) view_from_world: DMat4,
     /// `clip_from_view`.
     pub(crate) clip_from_view: DMat4,
-    /// The width of lines in pixels: 1 or 2.
+    /// The width of edges and normals in pixels: 1 or 2.
     pub(crate) line_width: i32,
+    /// The width of the lines of models, and the diameter of their points, in subpixels.
+    pub(crate) stroke_width: i32,
     /// The lights in view space, the oldest first.
     pub(crate) lights: Vec<ViewLight>,
     /// The ids of the lights, in the same order.

@@ -42,6 +42,7 @@ const FEATURES: &[Feature] = &[
     Feature(Effect::Edges, |it| switched(it.draw.lines.edges), None),
     Feature(Effect::FaceNormals, |it| switched(it.draw.lines.face_normals.is_some()), None),
     Feature(Effect::VertexNormals, |it| switched(it.draw.lines.vertex_normals.is_some()), None),
+    Feature(Effect::Strokes, strokes, None),
 ];
 
 /// Returns the effect that represents the presence of an item.
@@ -139,6 +140,7 @@ impl FramePlan {
             Effect::VertexNormals => {
                 plan.draws.iter_mut().for_each(|draw| draw.lines.vertex_normals = None);
             }
+            Effect::Strokes => plan.draws.iter_mut().for_each(|draw| draw.strokes = None),
             Effect::Marks => plan.draws.retain(|draw| matches!(draw.item, ItemId::Object(_))),
             Effect::Surfaces => plan.draws.iter_mut().for_each(|draw| draw.filled = false),
             Effect::Normals => return None,
@@ -325,6 +327,17 @@ fn vertex_colors(it: &Facts<'_>) -> EffectState {
         "a texture replaces them"
     };
     any(it, |shaded| shaded.vertex_colors, "").unwrap_or(EffectState::left_out(left_out))
+}
+
+fn strokes(it: &Facts<'_>) -> EffectState {
+    match &it.draw.strokes {
+        Some(drawn) if drawn.vertex_colors => EffectState::On("in the colours of vertices".into()),
+        Some(_) => EffectState::On("in Kd".into()),
+        None if it.object.model.mesh.strokes().is_empty() => {
+            EffectState::left_out("the file has none")
+        }
+        None => EffectState::left_out("they are not shown"),
+    }
 }
 
 fn back_faces(it: &Facts<'_>) -> EffectState {

@@ -30,11 +30,12 @@ use self::view_lights::view_lights;
 use crate::frame::shadows::Shadows;
 use crate::frame::variants::Variants;
 use crate::frame::{Eye, FramePlan, Rules};
+use crate::screen::coverage::SUBPIXELS;
 use marraztu_core::accuracy::{
     Arithmetic, LightAt, LightValues, Resolution, Samples, Settings, Shot,
 };
 use marraztu_core::base::image::Size;
-use marraztu_core::scene::Projection;
+use marraztu_core::scene::{Projection, View};
 
 /// Plans the picture of a shot.
 #[must_use]
@@ -114,6 +115,7 @@ fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
         view_from_world: observer.view_from_world,
         clip_from_view: observer.clip_from_view,
         line_width: if view.wide_lines { 2 } else { 1 },
+        stroke_width: stroke_width(view, settings.resolution),
         lights: Vec::new(),
         light_ids: Vec::new(),
         shadows: Shadows::default(),
@@ -141,4 +143,14 @@ fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
         into.notes.add(|| EffectUse::new(Effect::Marks, None, off));
     }
     into
+}
+
+/// Returns the width of the lines of models in subpixels of the drawn picture: an even number, so
+/// both halves are whole, and at least a pixel.
+#[expect(clippy::cast_possible_truncation, reason = "a few pixels")]
+fn stroke_width(view: &View, resolution: Resolution) -> i32 {
+    let wide = if view.wide_lines { 2.0 } else { 1.0 };
+    let drawn = if resolution == Resolution::Half { 0.5 } else { 1.0 };
+    let pixels = (view.line_width * wide * drawn).clamp(1.0, *View::LINE_WIDTHS.end());
+    2 * (pixels * f64::from(SUBPIXELS / 2)).round() as i32
 }

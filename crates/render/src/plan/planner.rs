@@ -13,14 +13,15 @@ use super::rules::Thing;
 use super::turning::{shows_fronts_only, turning_of};
 use super::uses::{self, EffectState, EffectUse};
 use crate::frame::Rules;
-use crate::frame::draw::{Back, Draw, Lines, Pipeline, uniform};
+use crate::frame::draw::{Back, Draw, DrawnStrokes, Lines, Pipeline, uniform};
 use crate::frame::raster_mode::RasterMode;
 use crate::lights::region::Region;
 use marraztu_core::accuracy::{LightAt, NormalMatrix, VertexArithmetic};
-use marraztu_core::base::{Shared, color::Color, math};
+use marraztu_core::base::color::{Color, byte};
+use marraztu_core::base::{Shared, math};
 use marraztu_core::scene::{
     Fill, ItemId, LightKind, MaterialChoice, Model, NormalLength, NormalSource, Object, ObjectId,
-    Observer,
+    Observer, Surface,
 };
 
 impl Planner<'_> {
@@ -90,6 +91,7 @@ impl Planner<'_> {
             },
             polygons: self.polygons_of(id),
             lines: self.lines(&object.model, object.edge_color),
+            strokes: self.strokes(id, object),
             ..self.draw(
                 ItemId::Object(id),
                 &object.model,
@@ -123,6 +125,7 @@ impl Planner<'_> {
             polygons: None,
             filled: self.shot.view.fill == Fill::Filled,
             lines: Lines::NONE,
+            strokes: None,
         }
     }
 
@@ -167,8 +170,8 @@ impl Planner<'_> {
         // An object that shows no pixel is left out before its surfaces are planned.
         let thing = Thing { observer: &self.observer, draw: &draw, bounds };
         let rules = into.plan.rules;
-        let reason = if mesh.polygon_count() == 0 {
-            Some("it has no faces")
+        let reason = if mesh.polygon_count() == 0 && draw.strokes.is_none() {
+            Some(if mesh.has_shapes() { "nothing of it is shown" } else { "it has no faces" })
         } else if !math::has_full_rank(DMat3::from_mat4(draw.view_from_object)) {
             Some("its placement is flat: it has no inside and no outside")
         } else if moves {
@@ -234,6 +237,32 @@ impl Planner<'_> {
             vertex_normals: view.vertex_normals.then_some(length),
             color,
         }
+    }
+
+    /// Plans the lines and points of an object. `None` if none are drawn.
+    fn strokes(&self, id: ObjectId, object: &Object) -> Option<DrawnStrokes> {
+        let mesh = &object.model.mesh;
+        // Polygon mode shows single polygons.
+        if mesh.strokes().is_empty() || self.polygons_of(id).is_some() {
+            return None;
+        }
+        let is_bare = object.surface == Surface::Material;
+        let tint = if is_bare { [1.0; 3] } else { object.tint.factors() };
+        let color = |part: u32| {
+            let look = object.part_look(part);
+            let is_plain = mesh.parts()[part as usize].material.is_none();
+            let own = match object.material {
+                // Without a material, they are as easy to see as edges.
+                MaterialChoice::File if is_plain => object.edge_color,
+                _ => Color(std::array::from_fn(|i| byte(look.material.diffuse[i] * tint[i]))),
+            };
+            (object.shows_part(part) && look.opacity > 0.0).then_some(own)
+        };
+        let parts = 0..u32::try_from(mesh.parts().len()).unwrap_or(u32::MAX);
+        let colors: Vec<Option<Color>> = parts.map(color).collect();
+        let is_shown = mesh.strokes().iter().any(|it| colors[it.part as usize].is_some());
+        let vertex_colors = !is_bare && !mesh.colors().is_empty();
+        is_shown.then_some(DrawnStrokes { colors, vertex_colors })
     }
 
     /// Adds helpers: the cameras other than the observer, and the bulbs that are on.

@@ -78,7 +78,9 @@ impl Thing<'_> {
 
     /// Returns whether all of its faces are culled as back faces; only tested for small meshes.
     pub(crate) fn is_turned_away(&self) -> bool {
-        !self.draws_normals() && is_turned_away(self.draw, self.observer.viewport)
+        !self.draws_normals()
+            && self.draw.strokes.is_none()
+            && is_turned_away(self.draw, self.observer.viewport)
     }
 
     /// Returns whether its polygons are filled.

@@ -47,6 +47,8 @@ pub enum Effect {
     FaceNormals,
     /// The normals of vertices, as lines.
     VertexNormals,
+    /// The lines and points of models.
+    Strokes,
     /// Helpers: the models of cameras and bulbs.
     Marks,
 }
@@ -74,6 +76,7 @@ impl Effect {
             Self::Edges => "Edges",
             Self::FaceNormals => "Face normals",
             Self::VertexNormals => "Vertex normals",
+            Self::Strokes => "Lines and points",
             Self::Marks => "Markers",
         }
     }

@@ -9,7 +9,7 @@ use super::lines::{self, ScreenLine};
 use super::queue::{Queue, SMALL};
 use super::tile_queues::TileQueues;
 use crate::screen::clip::ScreenVertex;
-use crate::screen::coverage::PixelBox;
+use crate::screen::coverage::{PixelBox, SUBPIXELS};
 use crate::screen::sample_positions::SamplePositions;
 use crate::screen::tiles::{TILE, tiles_of};
 use marraztu_core::base::image::Size;
@@ -129,12 +129,13 @@ impl Bins {
         self.each(bounds, |bin| bin.large.push(number));
     }
 
-    /// Adds a line of this width in pixels to the tiles it crosses.
-    pub(crate) fn add_line(&mut self, line: ScreenLine, width: i32) {
+    /// Adds a line, or a point, to the tiles it crosses.
+    pub(crate) fn add_line(&mut self, line: ScreenLine) {
         let number = u32::try_from(self.lines.len()).expect("fewer than 2^32 lines");
         self.lines.push(line);
         let picture =
             PixelBox { left: 0, top: 0, right: self.columns * TILE, bottom: self.rows * TILE };
+        let width = (line.width + SUBPIXELS - 1) / SUBPIXELS;
         // At a sample off the centre, the line may cover the next pixel.
         let width = if self.sample_positions.are_many() { width + 1 } else { width };
         for bounds in lines::stretches(&line, width, picture) {

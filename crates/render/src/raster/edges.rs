@@ -17,13 +17,13 @@ use super::vertices::fetch_vertices;
 use crate::accel::DrawEdge;
 use crate::frame::draw::{Draw, Lines};
 use crate::screen::clip::{Screen, ScreenVertex};
-use crate::screen::coverage::Grid;
+use crate::screen::coverage::{Grid, SUBPIXELS};
 use crate::screen::sample_positions::MANY;
 use marraztu_core::scene::{Corner, NONE, NormalSource, dvec3};
 
 /// The depth bias: lines are drawn this many steps of depth nearer than the surface below them,
 /// against z-fighting.
-const NEARER: u32 = 2;
+pub(super) const NEARER: u32 = 2;
 
 /// The inputs of line setup for one draw.
 #[derive(Debug)]
@@ -139,7 +139,9 @@ impl EdgeSetup<'_> {
 
     /// Adds a line of any length.
     fn add(&self, ends: [ScreenVertex; 2], number: u32, nearer: u32, bins: &mut Bins) {
-        bins.add_line(ScreenLine { ends, number, nearer, grid: self.grid }, self.width);
+        let width = self.width * SUBPIXELS;
+        let line = ScreenLine { ends, number, nearer, grid: self.grid, width, is_point: false };
+        bins.add_line(line);
     }
 
     /// Adds an edge that may need clipping.

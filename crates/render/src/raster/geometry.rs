@@ -16,6 +16,7 @@ use super::lines::LineNumber;
 use super::numbers::number;
 use super::parts::{Parts, share_out};
 use super::rule::{Rule as _, with_rule};
+use super::strokes;
 use super::vertex_variants;
 use super::vertices::Vertices;
 use super::work::{FEW, FEW_VERTICES, What, WorkList, piece_of};
@@ -261,18 +262,22 @@ impl ScreenGeometry {
                 return;
             }
             let edges = if draw.lines.edges { draw.model.mesh.edge_order().edges.len() } else { 0 };
-            // Edges come first, then normals: the number of a line tells its kind.
+            // Edges come first, then normals, then strokes: the number of a line tells its kind.
             let start = &mut self.inputs.starts[i];
             (start.line, start.normal) = (next, next + number(edges));
             start.normal_place = self.inputs.normals.len();
             edges::list_normals(draw, &mut self.inputs.normals);
             let normals = &self.inputs.normals[start.normal_place..];
-            next = start.normal + number(normals.len());
+            start.stroke = start.normal + number(normals.len());
+            let strokes = draw.strokes.as_ref().map_or(0, |_| draw.model.mesh.strokes().len());
+            next = start.stroke + number(strokes);
             start.line_end = next;
             let position = |edge| What::Edges.position(draw, edge);
             self.lines.add((i, draw), (What::Edges, edges), plan, position);
             let position = |i: usize| What::Normals.position(draw, normals[i].polygon as usize);
             self.lines.add((i, draw), (What::Normals, normals.len()), plan, position);
+            let position = |stroke| What::Strokes.position(draw, stroke);
+            self.lines.add((i, draw), (What::Strokes, strokes), plan, position);
         }
         if self.lines.len() > 0 {
             let parts = Parts { plan, inputs: &self.inputs };
@@ -335,12 +340,27 @@ impl ScreenGeometry {
         self.inputs.corners_of(draw as usize)
     }
 
-    /// Returns the colour of a line.
-    pub(crate) fn line_color(&self, plan: &FramePlan, line: LineNumber) -> [u8; 4] {
+    /// Returns the colour of a line at a pixel.
+    pub(crate) fn line_color(
+        &self,
+        plan: &FramePlan,
+        line: LineNumber,
+        pixel: [i32; 2],
+    ) -> [u8; 4] {
         if line.is_back() {
             return Color::BACK_FACE.opaque();
         }
-        plan.draws[self.draw_of_line(line)].lines.color.opaque()
+        let draw = &plan.draws[self.draw_of_line(line)];
+        match self.stroke(line) {
+            Some(stroke) => strokes::color(plan, draw, stroke, pixel).opaque(),
+            None => draw.lines.color.opaque(),
+        }
+    }
+
+    /// Returns the stroke that a line is, as an index into those of its mesh; `None` for edges and
+    /// normals.
+    pub(crate) fn stroke(&self, line: LineNumber) -> Option<u32> {
+        line.line().checked_sub(self.inputs.starts[self.draw_of_line(line)].stroke)
     }
 
     /// Returns whether a line is an edge and not a normal.
@@ -348,10 +368,17 @@ impl ScreenGeometry {
         line.line() < self.inputs.starts[self.draw_of_line(line)].normal
     }
 
-    /// Returns the draw of a line, and the polygon it is drawn for.
-    pub(crate) fn line_seen(&self, plan: &FramePlan, line: LineNumber) -> Option<(u32, u32)> {
+    /// Returns the draw of a line, and the polygon it is drawn for; strokes have none.
+    pub(crate) fn line_seen(
+        &self,
+        plan: &FramePlan,
+        line: LineNumber,
+    ) -> Option<(u32, Option<u32>)> {
         let draw = self.draw_of_line(line);
         let start = self.inputs.starts[draw];
+        if self.stroke(line).is_some() {
+            return Some((number(draw), None));
+        }
         let polygon = match line.line().checked_sub(start.normal) {
             Some(normal) => self.inputs.normals[start.normal_place + normal as usize].polygon,
             None => {
@@ -359,7 +386,7 @@ impl ScreenGeometry {
                 edges::polygon_of(&plan.draws[draw], line.line() - start.line, outlines)?
             }
         };
-        Some((number(draw), polygon))
+        Some((number(draw), Some(polygon)))
     }
 
     fn draw_of_line(&self, line: LineNumber) -> usize {

@@ -24,6 +24,8 @@ pub(crate) struct Start {
     pub(crate) line: u32,
     /// The number of the first normal among the lines.
     pub(crate) normal: u32,
+    /// The number of the first stroke among the lines.
+    pub(crate) stroke: u32,
     /// The number after the last line's.
     pub(crate) line_end: u32,
     /// The index of the first normal among the normals of all draws.

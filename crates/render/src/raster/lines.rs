@@ -74,9 +74,18 @@ pub(crate) struct ScreenLine {
     /// The grid of the ends, which is the grid of the triangles: on another one, a line would be
     /// hidden by its own surface.
     pub(crate) grid: Grid,
+    /// The width in subpixels of the usual grid: an even number, and at least a pixel.
+    pub(crate) width: i32,
+    /// Whether it is a point: a disc around both ends, which are equal.
+    pub(crate) is_point: bool,
 }
 
 impl ScreenLine {
+    /// Returns the width in steps of the grid.
+    fn width_on_grid(&self) -> i32 {
+        self.width * (self.grid.parts() / SUBPIXELS)
+    }
+
     /// Returns the line relative to a sample with this offset in 1/256 pixel.
     #[inline(always)]
     pub(crate) fn seen_from(&self, shift: [i32; 2]) -> Self {
@@ -134,24 +143,26 @@ pub(crate) fn stretches(
     })
 }
 
-/// Calls `take` with each pixel of a line inside `clip`, and the depth there.
+/// Calls `take` with each pixel of a line or point inside `clip`, and the depth there.
+///
+/// In a column, a line of width W covers the pixels with centres from W / 2 above it, exclusively,
+/// to W / 2 below it.
 #[inline(always)]
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_precision_loss,
     reason = "the nearest number is meant"
 )]
-pub(crate) fn pixels(
-    line: &ScreenLine,
-    width: i32,
-    clip: PixelBox,
-    mut take: impl FnMut(i32, i32, f32),
-) {
+pub(crate) fn pixels(line: &ScreenLine, clip: PixelBox, mut take: impl FnMut(i32, i32, f32)) {
+    if line.is_point {
+        return disc(line, clip, take);
+    }
     let ([a, b], parts) = (line.ends, line.grid.parts());
     let steep = (b.at().y - a.at().y).abs() > (b.at().x - a.at().x).abs();
     // u runs along the major axis, v across it. A wide line is centred on the segment: the segment
-    // is moved back by half of the added width, and each of its pixels is repeated.
-    let shift = (width - 1) * parts / 2;
+    // is moved back by half of the added width, and more pixels follow each of its pixels.
+    let wider = line.width_on_grid() - parts;
+    let shift = wider / 2;
     let turn = |p: ScreenVertex| {
         let Snapped { x, y } = p.at();
         if steep { (y, x - shift) } else { (x, y - shift) }
@@ -171,11 +182,18 @@ pub(crate) fn pixels(
     // v at the centre of the first column, times parts du: see `Crossing`.
     let first = i64::from(va) * du + dv * at(begin);
     let mut crossing = Crossing::new(first, dv * pixel, du * pixel);
+    // A width of whole pixels has the same number of pixels in all columns.
+    let is_whole = wider % parts == 0;
+    let wider = i64::from(wider);
     for u in begin..end {
-        let (v, along) = (crossing.next(), at(u));
-        let Ok(v) = i32::try_from(v) else { continue };
-        // None of the repeated pixels is inside the clip.
-        if v >= high || v <= low - width {
+        let ((v, rest), along) = (crossing.next(), at(u));
+        let more = match is_whole {
+            true => wider / pixel,
+            false => (rest + wider * du.abs()) / crossing.divisor,
+        };
+        let (Ok(v), Ok(last)) = (i32::try_from(v), i32::try_from(v + more)) else { continue };
+        // None of the pixels is inside the clip.
+        if v >= high || last < low {
             continue;
         }
         // The diamond test only matters near the ends.
@@ -187,9 +205,36 @@ pub(crate) fn pixels(
         let t = (along as f64 / du as f64).clamp(0.0, 1.0);
         let depth = f64::from(a.depth) + t * (f64::from(b.depth) - f64::from(a.depth));
         let depth = nearer(depth as f32, line.nearer);
-        for v in v.max(low)..(v + width).min(high) {
+        for v in v.max(low)..(last + 1).min(high) {
             let (x, y) = if steep { (v, u) } else { (u, v) };
             take(x, y, depth);
+        }
+    }
+}
+
+/// Calls `take` with each pixel of a point inside `clip`: the pixel that contains it, and those with
+/// centres in its disc.
+fn disc(line: &ScreenLine, clip: PixelBox, mut take: impl FnMut(i32, i32, f32)) {
+    let (Snapped { x, y }, parts) = (line.ends[0].at(), line.grid.parts());
+    let (diameter, half) = (line.width_on_grid(), parts / 2);
+    let radius = diameter / 2;
+    let depth = nearer(line.ends[0].depth, line.nearer);
+    let own = [x.div_euclid(parts), y.div_euclid(parts)];
+    let all = PixelBox {
+        left: (x - radius).div_euclid(parts),
+        top: (y - radius).div_euclid(parts),
+        right: (x + radius).div_euclid(parts) + 1,
+        bottom: (y + radius).div_euclid(parts) + 1,
+    };
+    let all = all.intersection(clip);
+    let squared = |a: i32, b: i32| (i64::from(a) - i64::from(b)).pow(2);
+    for row in all.top..all.bottom {
+        for column in all.left..all.right {
+            let [to_x, to_y] = [column, row].map(|at| at * parts + half);
+            let distance = squared(to_x, x) + squared(to_y, y);
+            if 4 * distance <= i64::from(diameter).pow(2) || own == [column, row] {
+                take(column, row, depth);
+            }
         }
     }
 }
@@ -220,14 +265,14 @@ impl Crossing {
         }
     }
 
-    /// Returns the quotient in this column, and advances to the next column.
+    /// Returns the quotient and the remainder in this column, and advances to the next column.
     #[inline(always)]
-    const fn next(&mut self) -> i64 {
+    const fn next(&mut self) -> (i64, i64) {
         let Self { quotient, remainder, step, divisor } = *self;
         let carry = remainder + step[1] >= divisor;
         self.quotient = quotient + step[0] + carry as i64;
         self.remainder = remainder + step[1] - if carry { divisor } else { 0 };
-        quotient
+        (quotient, remainder)
     }
 }
 
@@ -395,6 +440,10 @@ mod tests {
 
     const EVERYWHERE: PixelBox = PixelBox { left: -99, top: -99, right: 199, bottom: 199 };
 
+    fn line(ends: [ScreenVertex; 2], width: i32, grid: Grid) -> ScreenLine {
+        ScreenLine { ends, number: 0, nearer: 0, grid, width, is_point: false }
+    }
+
     fn drawn(ends: [(f64, f64); 2]) -> Vec<(i32, i32)> {
         drawn_wide(ends, 1)
     }
@@ -404,10 +453,10 @@ mod tests {
             ScreenVertex::new(Snapped { x: (x * 256.0) as i32, y: (y * 256.0) as i32 }, 0.5)
         };
         let ends = ends.map(vertex);
-        let line = ScreenLine { ends, number: 0, nearer: 0, grid: Grid::Usual };
+        let line = line(ends, width * SUBPIXELS, Grid::Usual);
         let taken = |line: &ScreenLine| {
             let mut pixels = Vec::new();
-            super::pixels(line, width, EVERYWHERE, |x, y, _| pixels.push((x, y)));
+            super::pixels(line, EVERYWHERE, |x, y, _| pixels.push((x, y)));
             pixels.sort_unstable();
             pixels
         };
@@ -523,6 +572,68 @@ mod tests {
     }
 
     #[test]
+    fn a_line_of_any_width_covers_the_centres_closer_than_half_of_it_along_the_shorter_axis() {
+        let mut rng = Rng::new(5);
+        let mut random = move |most: i32| rng.between(0, most);
+        for i in 0..5000 {
+            let ends = [0, 0].map(|_| [random(60 * 256), random(60 * 256)]);
+            let [[xa, ya], [xb, yb]] = ends;
+            let width = SUBPIXELS + 2 * random(700);
+            let grid = if i % 2 == 0 { Grid::Usual } else { Grid::Fine };
+            let times = grid.parts() / SUBPIXELS;
+            let vertex =
+                |[x, y]: [i32; 2]| ScreenVertex::new(Snapped { x: x * times, y: y * times }, 0.5);
+            let mut got = Vec::new();
+            pixels(&line(ends.map(vertex), width, grid), EVERYWHERE, |x, y, _| got.push([x, y]));
+            // Along the longer axis, centres between the ends; there, the diamonds decide.
+            let steep = (yb - ya).abs() > (xb - xa).abs();
+            let [u, v] = if steep { [1, 0] } else { [0, 1] };
+            let [a, b] = ends;
+            let (du, dv) = (i64::from(b[u] - a[u]), i64::from(b[v] - a[v]));
+            let inner = |at: i32| {
+                let centre = at * 256 + 128;
+                centre > a[u].min(b[u]) + 256 && centre < a[u].max(b[u]) - 256
+            };
+            let mut want = Vec::new();
+            for along in (-1..70).filter(|at| inner(*at)) {
+                for across in -9..80 {
+                    let [x, y] = [along, across].map(|at| i64::from(at * 256 + 128));
+                    // 2 |du| times the distance from the line, downwards.
+                    let by = (y - i64::from(a[v])) * du - (x - i64::from(a[u])) * dv;
+                    let (by, half) = (2 * by * du.signum(), i64::from(width) * du.abs());
+                    if -half < by && by <= half {
+                        want.push(if steep { [across, along] } else { [along, across] });
+                    }
+                }
+            }
+            got.retain(|pixel| inner(pixel[u]));
+            got.sort_unstable();
+            want.sort_unstable();
+            assert_eq!(got, want, "{ends:?}, {width} wide");
+        }
+    }
+
+    #[test]
+    fn a_point_covers_the_centres_in_its_disc_and_always_its_own_pixel() {
+        let mut rng = Rng::new(6);
+        let mut random = move |most: i32| rng.between(0, most);
+        for _ in 0..5000 {
+            let (x, y, width) = (random(30 * 256), random(30 * 256), SUBPIXELS + 2 * random(700));
+            let ends = [ScreenVertex::new(Snapped { x, y }, 0.5); 2];
+            let point = ScreenLine { is_point: true, ..line(ends, width, Grid::Usual) };
+            let mut got = Vec::new();
+            pixels(&point, EVERYWHERE, |x, y, _| got.push([x, y]));
+            let is_in = |[column, row]: &[i32; 2]| {
+                let away = [column * 256 + 128 - x, row * 256 + 128 - y].map(f64::from);
+                away[0].hypot(away[1]) <= f64::from(width) / 2.0
+                    || [*column, *row] == [x / 256, y / 256]
+            };
+            let all = (-9..40).flat_map(|row| (-9..40).map(move |column| [column, row]));
+            assert_eq!(got, all.filter(is_in).collect::<Vec<_>>(), "{x} {y}, {width} wide");
+        }
+    }
+
+    #[test]
     fn two_lines_that_follow_one_another_take_no_pixel_twice() {
         let (a, b, c) = ((0.3, 0.4), (5.6, 2.3), (9.1, 7.7));
         let first = drawn([a, b]);
@@ -537,10 +648,11 @@ mod tests {
         for i in 0..2000 {
             let ends = [0, 0].map(|_| ScreenVertex::new(Snapped { x: random(), y: random() }, 0.5));
             let grid = if i % 4 < 2 { Grid::Usual } else { Grid::Fine };
-            let line = ScreenLine { ends, number: 0, nearer: 0, grid };
-            let width = 1 + i % 2;
+            let (width, is_point) = (1 + i % 3, i % 7 == 0);
+            let ends = if is_point { [ends[0]; 2] } else { ends };
+            let line = ScreenLine { is_point, ..line(ends, width * SUBPIXELS - 2 * (i % 5), grid) };
             let boxes: Vec<PixelBox> = stretches(&line, width, picture).collect();
-            pixels(&line, width, picture, |x, y, _| {
+            pixels(&line, picture, |x, y, _| {
                 let holds = |own: &&PixelBox| {
                     (own.left..own.right).contains(&x) && (own.top..own.bottom).contains(&y)
                 };

@@ -4,7 +4,8 @@
 //! `work` after another: `setup` and `edges` put possibly visible primitives into `bins` (tile
 //! binning). `small` rasterises small triangles immediately, to `hits`. With several samples per
 //! pixel, they wait for their tile in `tile_queues` instead. A `tile` then draws its hits and
-//! queues, `large` triangles and `lines`, all with a depth test. The nearest primitive stays in the
+//! queues, `large` triangles and `lines`, all with a depth test (lines are edges, normals, and the
+//! `strokes` of models). The nearest primitive stays in the
 //! `visibility_buffer`. `layers` are the transparent triangles in front of it.
 //!
 //! Alternatives selected by the settings are variants of the same kernels: each `rule` of coverage
@@ -38,6 +39,7 @@ mod scan_lines;
 mod setup;
 mod small;
 mod small_edges;
+pub(crate) mod strokes;
 pub(crate) mod tile;
 mod tile_queues;
 mod vertex_variants;

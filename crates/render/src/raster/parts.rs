@@ -13,6 +13,7 @@ use super::inputs::Inputs;
 use super::numbers::number;
 use super::rule::with_rule;
 use super::setup::{self, Setup};
+use super::strokes::StrokeSetup;
 use super::work::{What, Work};
 use crate::accel::CLUSTER;
 use crate::cancellation::Cancellation;
@@ -92,6 +93,13 @@ impl Parts<'_> {
                 let normals = &inputs.normals[start.normal_place..][from..to];
                 let first = start.normal + number(from);
                 self.edge_setup(i).add_normals(level, (first, normals), bins);
+            }
+            What::Strokes => {
+                let grid = plan.raster_mode().grid;
+                let screen = Screen::new(draw.clip_from_object, plan.viewport).on(grid);
+                let screen = screen.seen_from(grid.offset(plan.shift));
+                let (first, width) = (start.stroke, plan.stroke_width);
+                StrokeSetup { draw, screen, grid, first, width }.run(level, from..to, bins);
             }
             What::Edges => {
                 self.edge_setup(i).run(level, &mesh.edge_order().edges[from..to], bins);

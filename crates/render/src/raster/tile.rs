@@ -141,7 +141,7 @@ impl Visibility {
                 dispatch!(level, simd => {
                     self.draw_by_rule::<_, N>(simd, (plan, frame), bins, tile);
                 });
-                self.draw_lines::<N>(level, bins, plan.line_width, tile);
+                self.draw_lines::<N>(level, bins, tile);
                 continue;
             }
             for &number in &bins.tiles[tile].large {
@@ -152,7 +152,7 @@ impl Visibility {
                     });
                 }
             }
-            self.draw_lines::<N>(level, bins, plan.line_width, tile);
+            self.draw_lines::<N>(level, bins, tile);
         }
     }
 
@@ -386,7 +386,7 @@ impl Visibility {
 
     /// Draws the long lines of a tile.
     #[inline(always)]
-    fn draw_lines<const N: usize>(&mut self, level: Level, bins: &Bins, width: i32, tile: usize) {
+    fn draw_lines<const N: usize>(&mut self, level: Level, bins: &Bins, tile: usize) {
         with_format!(self.depth_format, D => for &place in &bins.tiles[tile].lines {
             let format = D::of(self.depth_format);
             for sample in 0..self.sample_positions.count_in::<N>() {
@@ -395,7 +395,6 @@ impl Visibility {
                     bins.lines[place as usize].seen_from(self.sample_positions.shift::<N>(sample));
                 lines::pixels(
                     &line,
-                    width,
                     self.bounds,
                     #[inline(always)]
                     |x, y, depth| {

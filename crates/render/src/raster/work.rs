@@ -60,6 +60,8 @@ pub(crate) enum What {
     Edges,
     /// Setup of polygon normals.
     Normals,
+    /// Setup of the lines and points of a mesh.
+    Strokes,
 }
 
 /// Pieces of work on one picture, in the order of their homes.
@@ -147,6 +149,7 @@ impl What {
                 let corner = mesh.corners()[mesh.corners_of(polygon).start];
                 mesh.positions()[corner.position as usize].map(f64::from)
             }
+            Self::Strokes => mesh.stroke_ends(&mesh.strokes()[i])[0].to_array(),
             Self::Edges => match mesh.edge_order().edges[i].vertices[0] {
                 // An edge that no triangle uses has no vertex in draw order; any home will do.
                 NONE => [0.0; 3],

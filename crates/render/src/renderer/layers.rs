@@ -19,11 +19,13 @@ use crate::layers::{
 use crate::picture_camera::{AxesConvention, PictureCamera};
 use crate::plan::plan_frame;
 use crate::raster::geometry::ScreenGeometry;
+use crate::raster::lines::LineNumber;
+use crate::raster::strokes::along;
 use crate::raster::visibility_buffer::{Visible, seen};
 use crate::screen::clip::ScreenVertex;
 use crate::screen::coverage::PixelBox;
 use crate::screen::sample_positions::SamplePositions;
-use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE_SIDE, tiles_of};
+use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE_SIDE, pixel_of, tiles_of};
 use crate::screen::weights::{QuickWeights, Weights};
 use crate::shading::painter::bounds_of;
 use crate::shading::triangle_attributes::is_front;
@@ -178,7 +180,8 @@ struct SurfaceTriangle {
 
 /// The points of a visible triangle.
 struct Shape {
-    weights: QuickWeights,
+    /// `None` on lines and points, which have one point and no normal.
+    weights: Option<QuickWeights>,
     /// The first corner, and the vectors from it to the others.
     corners: [DVec3; 3],
     /// The same in the world.
@@ -242,6 +245,32 @@ impl<'a> Source<'a> {
         }
     }
 
+    /// Prepares the point of a line or point of a model that a pixel shows: a triangle with this
+    /// point at all corners, and without a normal. Edges and normals are not drawn here.
+    fn stroke(&self, line: LineNumber, pixel: [i32; 2]) -> SurfaceTriangle {
+        let Self { plan, frame, .. } = *self;
+        let index = frame.line_seen(plan, line).map_or(0, |(draw, _)| draw);
+        let draw = &plan.draws[index as usize];
+        let mesh = &draw.model.mesh;
+        let stroke = &mesh.strokes()[frame.stroke(line).unwrap_or(0) as usize];
+        let object = self.objects[index as usize];
+        let [part, material] = self.names.part_of(object, stroke.part);
+        let [from, to] = mesh.stroke_ends(stroke);
+        let t = if stroke.is_point() { 0.0 } else { along(plan, draw, stroke, pixel) };
+        let place = from + (to - from) * t;
+        let place = draw.view_from_object.transform_point3(place) * self.unit;
+        let shape = Shape {
+            weights: None,
+            corners: [place, DVec3::ZERO, DVec3::ZERO],
+            in_world: [self.world_from_camera.transform_point3(place), DVec3::ZERO, DVec3::ZERO],
+            normals: [DVec3::ZERO; 3],
+            least: 0.0,
+            normal: DVec3::ZERO,
+            uvs: None,
+        };
+        SurfaceTriangle { ids: [object, part, material, 0], shape: Some(shape) }
+    }
+
     /// Prepares the points of a draw's triangle.
     fn shape(&self, index: u32, number: u32) -> Shape {
         let Self { plan, frame, .. } = *self;
@@ -265,7 +294,7 @@ impl<'a> Source<'a> {
         };
         let world = |vector: DVec3| self.world_from_camera.transform_vector3(vector);
         Shape {
-            weights: QuickWeights::new(Weights::of_positions(plan, draw, vertices, number)),
+            weights: Some(QuickWeights::new(Weights::of_positions(plan, draw, vertices, number))),
             corners: [a, b - a, c - a],
             in_world: [self.world_from_camera.transform_point3(a), world(b - a), world(c - a)],
             normals,
@@ -320,6 +349,17 @@ impl<'a> Source<'a> {
         while let Some(word) = words.get(from) {
             let alike = words[from..].iter().take_while(|other| seen(**other) == seen(*word));
             let to = from + alike.count();
+            if let Visible::Line(line) = seen(*word) {
+                for place in from..to {
+                    let [x, y] = pixel_of([left, top], place);
+                    if x < bounds.right && y < bounds.bottom {
+                        let begin = y.cast_unsigned() as usize % TILE_SIDE * self.width;
+                        let at = begin + x.cast_unsigned() as usize;
+                        let point = [(at, DVec3::X)];
+                        self.put_points(&self.stroke(line, [x, y]), &point, band);
+                    }
+                }
+            }
             if let Visible::Triangle(number) = seen(*word) {
                 let surface = of(cached, self, number);
                 points.clear();
@@ -331,7 +371,9 @@ impl<'a> Source<'a> {
                     if row < rows && place < inside {
                         let y = top + i32::try_from(row).expect("a block has few rows");
                         // Ids are the same in the whole triangle.
-                        let weights = surface.shape.as_ref().map(|it| it.weights.of_row([left, y]));
+                        let shape = surface.shape.as_ref();
+                        let weights = shape.and_then(|shape| shape.weights.as_ref());
+                        let weights = weights.map(|weights| weights.of_row([left, y]));
                         let [a, b, c] = weights.unwrap_or_default();
                         // A band is one row of tiles, so rows count from its top.
                         let begin = y.cast_unsigned() as usize % TILE_SIDE * self.width + first;
@@ -399,6 +441,9 @@ impl<'a> Source<'a> {
     /// Returns the unit normal at a point of a triangle.
     #[inline(always)]
     fn normal(&self, shape: &Shape, weights: DVec3) -> DVec3 {
+        if shape.weights.is_none() {
+            return DVec3::ZERO;
+        }
         let [a, b, c] = shape.normals;
         let sum = a * weights.x + b * weights.y + c * weights.z;
         // Corners with opposite normals have none between them.

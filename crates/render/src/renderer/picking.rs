@@ -36,8 +36,8 @@ use marraztu_core::scene::ItemId;
 pub struct Hit {
     /// The object, the camera if its mark is shown, or the light if its bulb is shown.
     pub item: ItemId,
-    /// The polygon of the item's mesh.
-    pub polygon: u32,
+    /// The polygon of the item's mesh; `None` for the lines and points of a model.
+    pub polygon: Option<u32>,
     /// The depth: 1 at the near plane, 0 at the far plane.
     pub depth: f32,
 }
@@ -293,14 +293,14 @@ impl Renderer {
         }
     }
 
-    /// Returns the draw and the polygon named by a sample of the visibility buffer.
-    fn seen(&self, plan: &FramePlan, word: u64) -> Option<(u32, u32)> {
+    /// Returns the draw and the polygon, if there is one, named by a sample of the visibility buffer.
+    fn seen(&self, plan: &FramePlan, word: u64) -> Option<(u32, Option<u32>)> {
         match visibility_buffer::seen(word) {
             Visible::Background => None,
             Visible::Triangle(number) => {
                 let (draw, start) = self.frame.draw_of(number);
                 let mesh = &plan.draws[draw as usize].model.mesh;
-                Some((draw, mesh.polygon_of(number - start.number)))
+                Some((draw, Some(mesh.polygon_of(number - start.number))))
             }
             Visible::Line(line) => self.frame.line_seen(plan, line),
         }

@@ -138,6 +138,7 @@ fn magnified(plan: &FramePlan, window: PixelBox) -> FramePlan {
         shift: [window.left, window.top].map(|at| at * MAGNIFIED * SUBPIXELS),
         spacing: 1.0,
         line_width: plan.line_width * MAGNIFIED,
+        stroke_width: plan.stroke_width * MAGNIFIED,
         // 1/256 of a smaller pixel is as fine as the fine grid, which has a smaller guard band.
         variants: plan.variants.on_usual_grid(),
         ..plan.clone()

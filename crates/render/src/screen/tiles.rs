@@ -39,6 +39,14 @@ pub(crate) const fn within(x: i32, y: i32) -> usize {
     (y % BLOCK * BLOCK + x % BLOCK) as usize
 }
 
+/// Returns the column and row of a pixel, given its index in the block with this upper left pixel.
+#[inline(always)]
+#[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "small numbers")]
+pub(crate) const fn pixel_of([left, top]: [i32; 2], place: usize) -> [i32; 2] {
+    let place = place as i32;
+    [left + place % BLOCK, top + place / BLOCK]
+}
+
 /// Computes the indices of sixteen pixels in a tile's visibility buffer, for one of `samples`
 /// samples.
 #[inline(always)]

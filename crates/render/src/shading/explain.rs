@@ -115,7 +115,7 @@ fn one<T: ShadingNumber>(
     let ShadingContext { plan, frame, .. } = *context;
     match seen(word) {
         Visible::Background => (plain(Part::Background, plan.background.opaque()), 1.0),
-        Visible::Line(line) => (plain(Part::Line, frame.line_color(plan, line)), 1.0),
+        Visible::Line(line) => (plain(Part::Line, frame.line_color(plan, line, [x, y])), 1.0),
         Visible::Triangle(number) => {
             // The pixel is shaded alone, with the lights of its tile.
             let mut shader = Shader::<T>::default();

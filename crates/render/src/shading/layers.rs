@@ -101,7 +101,7 @@ impl<T: ShadingNumber> Shader<T> {
         for (place, word) in entries.iter().enumerate() {
             match seen(*word) {
                 Visible::Triangle(_) => {}
-                other => add_other(context, other, place, 1, sums),
+                other => add_other(context, other, (corner, place, 1), sums),
             }
         }
     }

@@ -12,7 +12,7 @@ use super::runs::Shown;
 use super::samples::{Kept, Other, Samples};
 use super::shader::{Out, Shader};
 use crate::raster::visibility_buffer::{BACKGROUND, Visible, seen, seen_number};
-use crate::screen::tiles::BLOCK_PIXELS;
+use crate::screen::tiles::{BLOCK_PIXELS, pixel_of};
 use crate::simd::{BATCH, Bits};
 
 impl<T: ShadingNumber> Shader<T> {
@@ -48,7 +48,8 @@ impl<T: ShadingNumber> Shader<T> {
         }
         // Lines and background need no light.
         for place in Bits(unlit & !shown.triangles) {
-            add_other(context, seen(first[place]), place, samples.shares[place], sums);
+            let share = samples.shares[place];
+            add_other(context, seen(first[place]), (corner, place, share), sums);
         }
         let mut first = self.fragments.len;
         let mut color = |shader: &mut Self, sums: &mut Sums| {
@@ -69,7 +70,7 @@ impl<T: ShadingNumber> Shader<T> {
         for Other { place, number, share } in samples.others.iter().copied() {
             if !matches!(seen_number(number), Visible::Triangle(_)) {
                 shown.lines |= u64::from(number != BACKGROUND) << place;
-                add_other(context, seen_number(number), place, share, sums);
+                add_other(context, seen_number(number), (corner, place, share), sums);
                 continue;
             }
             shown.triangles |= 1 << place;
@@ -92,7 +93,7 @@ impl<T: ShadingNumber> Shader<T> {
     ) {
         let shown = self.list_first(context, entries, corner);
         for place in Bits(!shown.triangles) {
-            add_other(context, seen(entries[place]), place, 1, sums);
+            add_other(context, seen(entries[place]), (corner, place, 1), sums);
         }
         if shown.triangles != 0 {
             self.fragments.shares = [1; BATCH];
@@ -133,16 +134,18 @@ impl<T: ShadingNumber> Shader<T> {
     }
 }
 
-/// Adds the colour of a line or of the background.
+/// Adds the colour of a line or of the background at a pixel of the block with this upper left
+/// pixel.
 pub(super) fn add_other<T>(
     context: &ShadingContext<'_, T>,
     visible: Visible,
-    place: usize,
-    share: i32,
+    (corner, place, share): ([i32; 2], usize, i32),
     sums: &mut Sums,
 ) {
     let color = match visible {
-        Visible::Line(line) => context.frame.line_color(context.plan, line),
+        Visible::Line(line) => {
+            context.frame.line_color(context.plan, line, pixel_of(corner, place))
+        }
         Visible::Background | Visible::Triangle(_) => context.plan.background.opaque(),
     };
     sums.add(place, color, share);

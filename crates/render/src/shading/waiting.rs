@@ -17,7 +17,7 @@ use super::shader::{Out, Shader, Waiting};
 use super::tiny::MANY;
 use crate::frame::color_path::ListPath;
 use crate::raster::visibility_buffer::{Visible, seen};
-use crate::screen::tiles::{BLOCK, BLOCK_PIXELS};
+use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, pixel_of};
 use crate::simd::Bits;
 use crate::simd::gather::most_gathered;
 use marraztu_core::base::color::Color;
@@ -45,12 +45,12 @@ impl<T: PathNumber> Shader<T> {
             && let group = group_of(context, runs.first_triangle())
             && T::wait_tiny(self, &group, (&runs, corner), (canvas, at))
         {
-            put_others(context, visibility, runs.shown(), (canvas, at), fill);
+            put_others(context, (visibility, corner), runs.shown(), (canvas, at), fill);
             return true;
         }
         if !self.waiting.is_empty() {
             if let Some(shown) = self.join(context, &runs, corner, at) {
-                put_others(context, visibility, shown, (canvas, at), fill);
+                put_others(context, (visibility, corner), shown, (canvas, at), fill);
                 return shown.triangles | shown.lines != 0;
             }
             // The block does not fit in, so the waiting ones are coloured and it begins a list.
@@ -59,7 +59,7 @@ impl<T: PathNumber> Shader<T> {
         // Triangles that were prepared for the last list may keep their slots.
         let most = self.most_slots(context);
         let shown = self.fragments.list_runs(context.level, &runs, corner, most);
-        put_others(context, visibility, shown, (canvas, at), fill);
+        put_others(context, (visibility, corner), shown, (canvas, at), fill);
         if shown.triangles == 0 {
             return shown.lines != 0;
         }
@@ -163,7 +163,7 @@ impl<T: ShadingNumber> Shader<T> {
 #[inline(always)]
 fn put_others<T>(
     context: &ShadingContext<'_, T>,
-    visibility: &[u64; BLOCK_PIXELS],
+    (visibility, corner): (&[u64; BLOCK_PIXELS], [i32; 2]),
     shown: Shown,
     (canvas, at): (&mut Canvas<'_>, usize),
     fill: Option<Color>,
@@ -178,7 +178,7 @@ fn put_others<T>(
     for i in Bits(shown.lines) {
         if let Visible::Line(line) = seen(visibility[i]) {
             canvas.pixels[at + canvas.offset(in_block(i))] =
-                context.frame.line_color(context.plan, line);
+                context.frame.line_color(context.plan, line, pixel_of(corner, i));
         }
     }
 }

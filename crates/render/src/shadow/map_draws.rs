@@ -18,7 +18,7 @@ use crate::raster::geometry::ScreenGeometry;
 use crate::raster::tile::Visibility;
 use crate::raster::visibility_buffer::{Visible, seen};
 use crate::screen::clip::Screen;
-use crate::screen::coverage::PixelBox;
+use crate::screen::coverage::{PixelBox, SUBPIXELS};
 use crate::screen::sample_positions::SamplePositions;
 use crate::screen::tiles::{BLOCK_PIXELS, PIXELS, TILE, tiles_of};
 use marraztu_core::accuracy::{Samples, ShadowMapForm, Transparency};
@@ -83,6 +83,7 @@ impl MapDraws {
             transparency: Transparency::Threshold,
             variants: Variants::default(),
             line_width: 1,
+            stroke_width: SUBPIXELS,
             lights: Vec::new(),
             light_ids: Vec::new(),
             shadows: Shadows::default(),
@@ -266,6 +267,7 @@ fn draw(caster: &Caster, pipelines: &mut Vec<Pipeline>) -> Draw {
         polygons: caster.polygons.clone(),
         filled: true,
         lines: Lines::NONE,
+        strokes: None,
     }
 }
 

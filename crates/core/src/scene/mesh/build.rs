@@ -48,7 +48,7 @@ impl Mesh {
         let ((computed, corner_points), (unused, bounds, mean)) = rayon::join(
             || points_and_corners(&source, &corners, &starts),
             || {
-                let unused = unused(source.positions.len(), &corners.positions);
+                let unused = unused(&source, &corners.positions);
                 let positions = || used(&source.positions, &unused);
                 let (bounds, mean) = (Bounds::of(positions()), mean(positions()));
                 (unused, bounds, mean)
@@ -67,6 +67,7 @@ impl Mesh {
             corner_uvs: corners.uvs,
             starts,
             polygon_parts: source.polygon_parts,
+            strokes: source.strokes,
             parts: source.parts,
             part_names: source.part_names,
             found: FoundOfShape::default(),
@@ -111,10 +112,10 @@ impl Mesh {
     }
 }
 
-/// Finds the vertices that no corner refers to, in ascending order.
-fn unused(vertices: usize, corners: &[u32]) -> Vec<u32> {
-    let mut is_used = vec![false; vertices];
-    for vertex in corners {
+/// Finds the vertices that no corner and no stroke refers to, in ascending order.
+fn unused(source: &MeshSource, corners: &[u32]) -> Vec<u32> {
+    let mut is_used = vec![false; source.positions.len()];
+    for vertex in corners.iter().chain(source.strokes.iter().flat_map(|stroke| &stroke.ends)) {
         is_used[*vertex as usize] = true;
     }
     (0..).zip(is_used).filter(|(_, is_used)| !is_used).map(|(vertex, _)| vertex).collect()
@@ -140,6 +141,7 @@ fn check(source: &MeshSource, corners: &CornerLists) -> Result<(), MeshError> {
     };
     room("vertices", source.positions.len())?;
     room("corners", corners.positions.len())?;
+    room("lines and points", source.strokes.len())?;
     let length = |what, right: bool| if right { Ok(()) } else { Err(MeshError::Length(what)) };
     let all: u64 = source.arities.iter().map(|&n| u64::from(n)).sum();
     let right = |list: &[u32]| list.is_empty() || list.len() as u64 == all;
@@ -173,5 +175,10 @@ fn check(source: &MeshSource, corners: &CornerLists) -> Result<(), MeshError> {
     within("vertex", &corners.positions, source.positions.len(), false)?;
     within("place on the texture", &corners.uvs, source.uvs.len(), true)?;
     within("normal", &corners.normals, source.normals.len(), true)?;
-    within("part", &source.polygon_parts, source.parts.len(), false)
+    within("part", &source.polygon_parts, source.parts.len(), false)?;
+    let strokes = || source.strokes.iter();
+    let ends: Vec<u32> = strokes().flat_map(|stroke| stroke.ends).collect();
+    within("vertex", &ends, source.positions.len(), false)?;
+    let parts: Vec<u32> = strokes().map(|stroke| stroke.part).collect();
+    within("part", &parts, source.parts.len(), false)
 }

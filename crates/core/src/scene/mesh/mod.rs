@@ -1,7 +1,7 @@
 //! The shape of a model: polygons of any size over shared vertices.
 //!
 //! A vertex is a `v` statement of the file. Polygons that refer to the same `v` share it, even
-//! across groups. For lighting, a vertex and a normal make a [`Point`]; each corner of a polygon
+//! across groups. Lines and points ([`Stroke`]) refer to vertices, too. For lighting, a vertex and a normal make a [`Point`]; each corner of a polygon
 //! has one point with the computed normal and one with the file's normal.
 //!
 //! Data that few pictures need is computed on first use (`cache`). Meshes that differ only in their
@@ -24,6 +24,7 @@ mod placeholder;
 mod points;
 mod sets;
 mod splits;
+pub(super) mod strokes;
 mod tangents;
 
 use glam::{DMat4, DVec3};
@@ -31,7 +32,7 @@ use glam::{DMat4, DVec3};
 pub use bodies::ClosedBodies;
 pub use offset::split_positions;
 
-use super::{Bounds, Smoothing};
+use super::{Bounds, Smoothing, Stroke};
 use crate::base::Shared;
 use crate::scene::mesh::cache::{Found, FoundOfShape};
 use crate::scene::mesh::points::CornerPoints;
@@ -58,7 +59,9 @@ pub struct MeshSource {
     pub arities: Vec<u32>,
     /// The part that each polygon belongs to.
     pub polygon_parts: Vec<u32>,
-    /// The parts; at least one if there is a polygon.
+    /// The lines and points.
+    pub strokes: Vec<Stroke>,
+    /// The parts; at least one if there is a polygon or a stroke.
     pub parts: Vec<Part>,
     /// The file's names for each part; empty if the mesh is not from a file.
     pub part_names: Vec<PartNames>,
@@ -104,7 +107,7 @@ impl SourceCorner {
     }
 }
 
-/// A run of polygons with the same `o`, `g` and `usemtl` in a file.
+/// A run of polygons, lines and points with the same `o`, `g` and `usemtl` in a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Part {
     /// The part's name in the file.
@@ -182,8 +185,9 @@ pub(super) struct Shape {
     pub(super) corner_uvs: Vec<u32>,
     pub(super) starts: Vec<u32>,
     pub(super) polygon_parts: Vec<u32>,
+    pub(super) strokes: Vec<Stroke>,
     pub(super) without_area: Vec<u32>,
-    /// The vertices that no face uses, ascending.
+    /// The vertices that no face and no stroke uses, ascending.
     pub(super) unused: Vec<u32>,
     pub(super) parts: Vec<Part>,
     pub(super) part_names: Vec<PartNames>,
@@ -202,6 +206,7 @@ impl PartialEq for Shape {
             && self.corner_uvs == other.corner_uvs
             && self.starts == other.starts
             && self.polygon_parts == other.polygon_parts
+            && self.strokes == other.strokes
             && self.parts == other.parts
             && self.part_names == other.part_names
     }
@@ -266,24 +271,29 @@ impl Mesh {
         &self.shape.positions
     }
 
-    /// Returns the positions of the vertices that a face uses, relative to [`Self::offset`]; all
-    /// positions if the mesh has no faces.
+    /// Returns the positions of the vertices that a face or a stroke uses, relative to
+    /// [`Self::offset`]; all positions if the mesh has neither.
     pub fn used_positions(&self) -> impl Iterator<Item = DVec3> {
         used(&self.shape.positions, &self.shape.unused)
     }
 
-    /// Returns the positions of the corners of all polygons in some parts, relative to
-    /// [`Self::offset`]. A shared vertex comes once for each corner.
-    pub fn positions_of_parts(&self, some: impl Fn(u32) -> bool) -> impl Iterator<Item = DVec3> {
+    /// Returns the positions of the corners of all polygons and of the ends of all strokes in some
+    /// parts, relative to [`Self::offset`]. A shared vertex comes once for each of them.
+    pub fn positions_of_parts(
+        &self,
+        some: impl Fn(u32) -> bool + Copy,
+    ) -> impl Iterator<Item = DVec3> {
         let shape = &self.shape;
         let polygons = shape.polygon_parts.iter().zip(shape.starts.windows(2));
         let corners = polygons
             .filter(move |(part, _)| some(**part))
             .flat_map(|(_, ends)| &shape.corners[ends[0] as usize..ends[1] as usize]);
-        corners.map(|vertex| dvec3(shape.positions[*vertex as usize]))
+        let strokes = shape.strokes.iter().filter(move |stroke| some(stroke.part));
+        let ends = strokes.flat_map(|stroke| &stroke.ends);
+        corners.chain(ends).map(|vertex| dvec3(shape.positions[*vertex as usize]))
     }
 
-    /// Returns the vertices that no face uses, ascending.
+    /// Returns the vertices that no face and no stroke uses, ascending.
     pub fn unused_vertices(&self) -> &[u32] {
         &self.shape.unused
     }

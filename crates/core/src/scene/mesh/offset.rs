@@ -13,22 +13,22 @@ use crate::scene::Bounds;
 /// has 24 bits, so without an offset at least 20 bits of the size are kept.
 const FAR: f64 = 16.0;
 
-/// Returns the offset of positions, and the positions relative to it. `corners` lists the vertices
-/// that faces use.
+/// Returns the offset of positions, and the positions relative to it. `used` lists the vertices
+/// that faces and strokes use.
 ///
 /// The offset is a multiple of a power of ten, so differences of numbers with few decimals have few
 /// decimals, too.
-pub fn split_positions(positions: &[[f64; 3]], corners: &[u32]) -> (DVec3, Vec<[f32; 3]>) {
-    let offset = offset(bounds(positions, corners));
+pub fn split_positions(positions: &[[f64; 3]], used: &[u32]) -> (DVec3, Vec<[f32; 3]>) {
+    let offset = offset(bounds(positions, used));
     #[expect(clippy::cast_possible_truncation, reason = "the rounding that is meant")]
     let relative = |p: &[f64; 3]| (DVec3::from_array(*p) - offset).to_array().map(|x| x as f32);
     (offset, positions.par_iter().map(relative).collect())
 }
 
-/// Bounds the positions that faces use, or all positions without faces.
-fn bounds(positions: &[[f64; 3]], corners: &[u32]) -> Option<Bounds> {
+/// Bounds the used positions, or all positions if none is used.
+fn bounds(positions: &[[f64; 3]], used: &[u32]) -> Option<Bounds> {
     let at = |p: &[f64; 3]| Some(Bounds::at(DVec3::from_array(*p)));
-    let used = corners.par_iter().filter_map(|vertex| positions.get(*vertex as usize));
+    let used = used.par_iter().filter_map(|vertex| positions.get(*vertex as usize));
     let join = |a: Option<Bounds>, b: Option<Bounds>| match (a, b) {
         (Some(a), Some(b)) => Some(a.around(&b)),
         (a, b) => a.or(b),

@@ -53,9 +53,9 @@ impl Names {
         self.of_object = OfObject { keeps, ..OfObject::default() };
     }
 
-    /// Names an object that has no faces.
-    pub(super) fn object_without_faces(&mut self, object: &Object, text: &mut String) {
-        if object.model.mesh.polygon_count() == 0 && !self.alone {
+    /// Names an object that has nothing but vertices.
+    pub(super) fn object_without_shapes(&mut self, object: &Object, text: &mut String) {
+        if !object.model.mesh.has_shapes() && !self.alone {
             let name = self.objects.take(&on_one_line(&object.name));
             self.call(PartNames { object: Some(name), group: None, ..self.now.clone() }, text);
         }
