@@ -435,12 +435,16 @@ fn a_pixel_maps_to_its_item_and_polygon() {
     let mut renderer = Renderer::default();
     renderer.render(&plan);
     let mut item = |x: usize, y: usize| renderer.hit(x, y).map(|hit| (hit.item, hit.polygon));
-    assert_eq!(item(52, 100), Some((ItemId::Object(FIRST), 1)));
-    assert_eq!(item(148, 100), Some((ItemId::Object(SECOND), 1)));
+    assert_eq!(item(52, 100), Some((ItemId::Object(FIRST), Some(1))));
+    assert_eq!(item(148, 100), Some((ItemId::Object(SECOND), Some(1))));
     assert_eq!(item(100, 20), None);
     assert_eq!(item(1000, 20), None);
     let bulb = scene.lights.iter().find(|(_, light)| light.slot == 2).unwrap().0;
-    assert_eq!(item(100, 100), Some((ItemId::Light(bulb), 0)), "the diamond stands in the middle");
+    assert_eq!(
+        item(100, 100),
+        Some((ItemId::Light(bulb), Some(0))),
+        "the diamond stands in the middle"
+    );
 }
 
 #[test]

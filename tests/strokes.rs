@@ -179,6 +179,22 @@ fn every_instruction_set_and_every_redraw_give_the_same_picture() {
 }
 
 #[test]
+fn an_outline_surrounds_lines_and_leaves_them_visible() {
+    let (scene, view) = shown(&[(level(), at(60.0, 0.0, 0.0, 0.0))], 1.5);
+    let plan = plan_frame(&Shot::new(&scene, &view, &Settings::default(), Size::new(64, 64)));
+    let mut renderer = Renderer::default();
+    renderer.render(&plan);
+    let item = ItemId::Object(LINE);
+    let (own, outlined) = (renderer.pixels_of(item), renderer.outlined_pixels(&[item]));
+    assert!(own.contains(&true) && outlined.len() == own.len());
+    for (at, is_outlined) in outlined.iter().enumerate() {
+        let near = |at: usize| (at.saturating_sub(1)..at + 2).any(|at| own.get(at) == Some(&true));
+        let rows = [at.wrapping_sub(64), at, at + 64];
+        assert_eq!(*is_outlined, rows.into_iter().any(|row| row < own.len() && near(row)));
+    }
+}
+
+#[test]
 fn the_plan_says_whether_a_model_has_lines_and_points() {
     let state = |model: Shared<Model>, surface| {
         let (mut scene, view) = shown(&[(model, at(60.0, 0.0, 0.0, 0.0))], 1.5);

@@ -201,13 +201,23 @@ pub(crate) fn own_or_silver(loaded: &Loaded) -> MaterialChoice {
     }
 }
 
-/// Summarises a model: "6,320 faces, 3,644 vertices". If the file had losses, the first one follows
+/// Summarises a model: "6,320 faces, 3,644 vertices", with its lines and points if it has any. If the file had losses, the first one follows
 /// with its file, and the number of further findings.
 pub(crate) fn summary(loaded: &Loaded) -> String {
     let mesh = &loaded.model.mesh;
-    let faces = mesh.polygon_count();
-    let vertices = counted(mesh.positions().len(), "vertex", "vertices");
-    let counts = format!("{}, {vertices}", counted(faces, "face", "faces"));
+    let [lines, points] = mesh.stroke_counts();
+    let counts = [
+        (mesh.polygon_count(), "face", "faces"),
+        (lines, "line", "lines"),
+        (points, "point", "points"),
+        (mesh.positions().len(), "vertex", "vertices"),
+    ];
+    let there = |(count, one, _): &(usize, &str, &str)| {
+        *count > 0 || (*one == "face" && mesh.strokes().is_empty()) || *one == "vertex"
+    };
+    let counts = counts.into_iter().filter(there);
+    let counts = counts.map(|(count, one, many)| counted(count, one, many));
+    let counts = counts.collect::<Vec<_>>().join(", ");
     let more = loaded.findings.len().saturating_sub(1);
     match (loaded.findings.iter().find(|it| it.kind.is_loss()), more) {
         (None, _) => counts,

@@ -270,11 +270,11 @@ impl ViewportRenderer {
         (!fills_most(size, &own)).then(|| Border::of(item, size, &own))
     }
 
-    /// Marks the pixels that show any of these items.
+    /// Marks the pixels inside the outline of these items.
     fn mask(&mut self, all: &[ItemId]) -> Option<(Size, Vec<bool>)> {
         self.shown?;
         let [width, height] = self.images[2].size;
-        Some((Size::new(width, height), self.renderer.pixels_of_any(all)))
+        Some((Size::new(width, height), self.renderer.outlined_pixels(all)))
     }
 
     /// Returns the hit at a pixel of the picture at full size.

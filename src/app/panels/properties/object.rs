@@ -301,6 +301,11 @@ fn model_ui(ui: &mut Ui, object: &Object) {
     fact(ui, "Vertices", &grouped(mesh.positions().len()));
     fact(ui, "Polygons", &grouped(mesh.polygon_count()));
     fact(ui, "Triangles", &grouped(mesh.triangle_count()));
+    for (label, count) in ["Lines", "Points"].into_iter().zip(mesh.stroke_counts()) {
+        if count > 0 {
+            fact(ui, label, &grouped(count));
+        }
+    }
     fact(ui, "Parts", &grouped(mesh.parts().len()));
     if let Some(bounds) = mesh.bounds() {
         let [x, y, z] = bounds.extent().to_array().map(short);
