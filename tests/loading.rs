@@ -138,7 +138,8 @@ fn lines_and_points_are_read_with_their_parts() {
         [
             "2 lines or points refer to vertices that the file does not have (the first: \"x\") \
              and are skipped (first: line 13)",
-            "2 lines have fewer than two vertices, or points none, and are skipped (first: line 10)",
+            "2 lines have fewer than two vertices, or points none, and are skipped \
+             (first: line 10)",
         ]
     );
 }

@@ -159,7 +159,7 @@ fn the_first_scene_flies() {
 }
 
 #[test]
-fn a_model_without_faces_is_one_notice_that_names_its_file_shortly() {
+fn a_model_of_points_is_one_notice_that_counts_them() {
     let (_folder, path) = folder_with("cloud.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
     let mut editor = Editor::new();
     editor.open_at_start(&[&path]);
@@ -171,7 +171,7 @@ fn a_model_without_faces_is_one_notice_that_names_its_file_shortly() {
     let notices: Vec<&str> =
         editor.state().notices.iter().map(|notice| notice.text.as_str()).collect();
     let [only] = notices[..] else { panic!("{notices:?}") };
-    assert!(only.starts_with("cloud: 0 faces, 3 vertices; cloud.obj: "), "{only}");
+    assert!(only.starts_with("Opened cloud: 3 points, 3 vertices"), "{only}");
     assert!(editor.state().notices[0].details[0].contains(&path.display().to_string()));
 }
 

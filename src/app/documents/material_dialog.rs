@@ -201,8 +201,8 @@ pub(crate) fn own_or_silver(loaded: &Loaded) -> MaterialChoice {
     }
 }
 
-/// Summarises a model: "6,320 faces, 3,644 vertices", with its lines and points if it has any. If the file had losses, the first one follows
-/// with its file, and the number of further findings.
+/// Summarises a model: "6,320 faces, 3,644 vertices", with its lines and points if it has any. If
+/// the file had losses, the first one follows with its file, and the number of further findings.
 pub(crate) fn summary(loaded: &Loaded) -> String {
     let mesh = &loaded.model.mesh;
     let [lines, points] = mesh.stroke_counts();

@@ -212,8 +212,8 @@ pub(crate) fn pixels(line: &ScreenLine, clip: PixelBox, mut take: impl FnMut(i32
     }
 }
 
-/// Calls `take` with each pixel of a point inside `clip`: the pixel that contains it, and those with
-/// centres in its disc.
+/// Calls `take` with each pixel of a point inside `clip`: the pixel that contains it, and those
+/// with centres in its disc.
 fn disc(line: &ScreenLine, clip: PixelBox, mut take: impl FnMut(i32, i32, f32)) {
     let (Snapped { x, y }, parts) = (line.ends[0].at(), line.grid.parts());
     let (diameter, half) = (line.width_on_grid(), parts / 2);

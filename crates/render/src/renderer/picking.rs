@@ -185,8 +185,8 @@ impl Renderer {
         self.spread(grown)
     }
 
-    /// Marks the drawn pixels that show any of these items, if `counts` holds for the polygon; lines
-    /// and points of models have none.
+    /// Marks the drawn pixels that show any of these items, if `counts` holds for the polygon;
+    /// lines and points of models have none.
     fn marked(&mut self, items: &[ItemId], counts: fn(Option<u32>) -> bool) -> Vec<bool> {
         let mut pixels = vec![false; self.seen_size().area()];
         let mut last = (None, false);
@@ -324,7 +324,8 @@ impl Renderer {
         }
     }
 
-    /// Returns the draw and the polygon, if there is one, named by a sample of the visibility buffer.
+    /// Returns the draw and the polygon, if there is one, named by a sample of the visibility
+    /// buffer.
     fn seen(&self, plan: &FramePlan, word: u64) -> Option<(u32, Option<u32>)> {
         match visibility_buffer::seen(word) {
             Visible::Background => None,

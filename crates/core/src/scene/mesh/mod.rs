@@ -1,8 +1,9 @@
 //! The shape of a model: polygons of any size over shared vertices.
 //!
 //! A vertex is a `v` statement of the file. Polygons that refer to the same `v` share it, even
-//! across groups. Lines and points ([`Stroke`]) refer to vertices, too. For lighting, a vertex and a normal make a [`Point`]; each corner of a polygon
-//! has one point with the computed normal and one with the file's normal.
+//! across groups. Lines and points ([`Stroke`]) refer to vertices, too. For lighting, a vertex and
+//! a normal make a [`Point`]; each corner of a polygon has one point with the computed normal and
+//! one with the file's normal.
 //!
 //! Data that few pictures need is computed on first use (`cache`). Meshes that differ only in their
 //! computed normals share everything else.
