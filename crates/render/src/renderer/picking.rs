@@ -158,53 +158,49 @@ impl Renderer {
     /// Marks the pixels that show any of these items, like [`Self::pixels_of`].
     #[must_use]
     pub fn pixels_of_any(&mut self, items: &[ItemId]) -> Vec<bool> {
-        let marked = self.marked(items, |_| true);
-        self.spread(marked)
+        let [all, _] = self.marked(items);
+        self.spread(all)
     }
 
-    /// Marks the pixels inside the outline of these items: those that show their faces. Items of
-    /// lines and points alone are outlined at a distance of one pixel, which leaves their colours
-    /// visible.
+    /// Marks the pixels inside the outline of these items. Lines and points of models are outlined
+    /// at a distance of one pixel, which leaves their colours visible.
     #[must_use]
     pub fn outlined_pixels(&mut self, items: &[ItemId]) -> Vec<bool> {
-        let faces = self.marked(items, |polygon| polygon.is_some());
-        if faces.contains(&true) {
-            return self.spread(faces);
-        }
-        let strokes = self.marked(items, |_| true);
+        let [mut all, strokes] = self.marked(items);
         let width = self.seen_size().width.max(1);
-        let mut grown = strokes.clone();
         for at in (0..strokes.len()).filter(|at| strokes[*at]) {
             let (column, row) = (at % width, at - at % width);
             for beside in [row.checked_sub(width), Some(row), Some(row + width)] {
                 let Some(row) = beside.filter(|row| *row < strokes.len()) else { continue };
                 let columns = column.saturating_sub(1)..(column + 2).min(width);
-                grown[row + columns.start..row + columns.end].fill(true);
+                all[row + columns.start..row + columns.end].fill(true);
             }
         }
-        self.spread(grown)
+        self.spread(all)
     }
 
-    /// Marks the drawn pixels that show any of these items, if `counts` holds for the polygon;
-    /// lines and points of models have none.
-    fn marked(&mut self, items: &[ItemId], counts: fn(Option<u32>) -> bool) -> Vec<bool> {
-        let mut pixels = vec![false; self.seen_size().area()];
-        let mut last = (None, false);
+    /// Marks the drawn pixels that show any of these items, and those that show a line or point of
+    /// their models.
+    fn marked(&mut self, items: &[ItemId]) -> [Vec<bool>; 2] {
+        let [mut all, mut strokes] = [0; 2].map(|_| vec![false; self.seen_size().area()]);
+        let mut last = (None, [false; 2]);
         self.look(|renderer, plan, at, _, words| {
-            pixels[at] = words.iter().any(|word| {
+            for word in words {
                 // Neighbouring pixels mostly show the same primitive.
                 let primitive = Some(primitive(*word));
                 if last.0 != primitive {
-                    let is_own = |(draw, polygon): (u32, Option<u32>)| {
-                        items.contains(&plan.draws[draw as usize].item) && counts(polygon)
-                    };
-                    last = (primitive, renderer.seen(plan, *word).is_some_and(is_own));
+                    let own = renderer
+                        .seen(plan, *word)
+                        .filter(|(draw, _)| items.contains(&plan.draws[*draw as usize].item));
+                    let is_stroke = own.is_some_and(|(_, polygon)| polygon.is_none());
+                    last = (primitive, [own.is_some(), is_stroke]);
                 }
-                last.1
-            });
+                all[at] |= last.1[0];
+                strokes[at] |= last.1[1];
+            }
             ControlFlow::Continue(())
         });
-        pixels
+        [all, strokes]
     }
 
     /// Returns the item shown at each pixel, row by row from the top, or `None` if every one of
