@@ -206,6 +206,7 @@ impl Copied {
             normals: self.normals,
             corners: Vec::new(),
             polygon_parts: vec![0; self.arities.len()],
+            strokes: Vec::new(),
             arities: self.arities,
             parts: vec![Part { name: name.clone(), material: Some(0) }],
             part_names: Vec::new(),

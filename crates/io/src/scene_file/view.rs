@@ -113,7 +113,7 @@ fn is_zero(x: &f64) -> bool {
 }
 
 fn is_first_width(x: &f64) -> bool {
-    *x == View::LINE_WIDTH
+    x.to_bits() == View::LINE_WIDTH.to_bits()
 }
 
 /// Reads the view of a scene. Fails with the reason if one of its numbers is invalid.
