@@ -72,6 +72,7 @@ def test_a_failed_change_changes_nothing(quad):
         lambda: setattr(scene, "background", (0, 0, 256)),
         lambda: setattr(scene, "background", "blue"),
         lambda: setattr(scene, "exposure", 11),
+        lambda: setattr(scene, "line_width", 0.5),
         lambda: setattr(scene, "edges", "all"),
         lambda: setattr(scene, "lights", [mz.Light.sun((0, 0, 0))]),
         lambda: setattr(scene, "lights", [mz.Light("lamp")]),
