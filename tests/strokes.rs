@@ -23,7 +23,8 @@ use marraztu_core::scene::{
 };
 use marraztu_io::{self as io, Progress};
 use marraztu_render::{
-    Effect, EffectState, Layer, LayerSet, NormalSpace, Renderer, explain_frame, plan_frame,
+    Effect, EffectState, Layer, LayerSet, NormalSpace, Renderer, explain_frame, plan_everything,
+    plan_frame,
 };
 
 const LINE: ObjectId = ObjectId(10);
@@ -212,8 +213,43 @@ fn the_plan_says_whether_a_model_has_lines_and_points() {
     let (on, pixels) = state(level(), lit);
     assert_eq!(on, EffectState::On("in the colours of vertices".into()));
     assert!(pixels.unwrap() > 15);
-    assert_eq!(state(level(), Surface::Material).0, EffectState::On("in Kd".into()));
+    let in_kd = "in Kd; without a material, in the colour of edges";
+    assert_eq!(state(level(), Surface::Material).0, EffectState::On(in_kd.into()));
     assert_eq!(state(square(), lit).0, EffectState::LeftOut("the file has none".into()));
+}
+
+#[test]
+fn a_plan_of_lines_names_no_light_and_no_surface() {
+    let (scene, view) = shown(&[(level(), at(60.0, 0.0, 0.0, 0.0))], 1.5);
+    let shot = Shot::new(&scene, &view, &Settings::default(), Size::new(64, 64));
+    let (_, uses) = explain_frame(&shot);
+    let of_line = |it: &&marraztu_render::EffectUse| {
+        it.on.as_ref().is_some_and(|thing| thing.item == ItemId::Object(LINE))
+    };
+    let on = uses.iter().filter(of_line).filter(|it| it.state.is_on());
+    assert_eq!(on.map(|it| it.effect).collect::<Vec<_>>(), [Effect::Strokes]);
+    let surfaces = uses.iter().filter(of_line).find(|it| it.effect == Effect::Surfaces).unwrap();
+    assert_eq!(surfaces.state, EffectState::LeftOut("it has no faces".into()));
+}
+
+#[test]
+fn a_wide_point_beside_the_picture_reaches_into_it() {
+    let point = strokes(&[([0.0; 3], [1.0; 3])], &[[0, 0]]);
+    for projection in [Projection::Perspective, Projection::Orthographic] {
+        // Further and further to the right, until nothing of the point is seen.
+        let mut seen = Vec::new();
+        for step in 0..400 {
+            let place = at(1.0, 3.0 * f64::from(step), 0.0, 0.0);
+            let (scene, view) = shown(&[(point.clone(), place)], 60.0);
+            let view = View { projection, ..view };
+            let shot = Shot::new(&scene, &view, &Settings::default(), Size::new(100, 100));
+            let [plan, everything] = [plan_frame(&shot), plan_everything(&shot)];
+            let picture = Renderer::default().render(&plan).clone();
+            assert!(picture == *Renderer::default().render(&everything), "{projection:?} {step}");
+            seen.push(covered(&picture, &scene).contains(&true));
+        }
+        assert!(seen[0] && !seen[399], "{projection:?}");
+    }
 }
 
 #[test]

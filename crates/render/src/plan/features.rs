@@ -23,6 +23,17 @@ struct Facts<'a> {
     shaded: Vec<&'a Shaded>,
 }
 
+impl Facts<'_> {
+    /// Returns the reason why no polygons are filled, if that is so.
+    fn unfilled(&self) -> Option<&'static str> {
+        if self.object.model.mesh.polygon_count() == 0 {
+            Some("it has no faces")
+        } else {
+            (!self.draw.filled).then_some("edges only")
+        }
+    }
+}
+
 /// A row of the table: an effect, its explanation, and, for effects of surfaces, a test for a
 /// surface.
 struct Feature(Effect, fn(&Facts<'_>) -> EffectState, Option<fn(&Shaded) -> bool>);
@@ -174,8 +185,8 @@ fn switched(on: bool) -> EffectState {
 }
 
 fn surfaces(it: &Facts<'_>) -> EffectState {
-    if !it.draw.filled {
-        EffectState::left_out("edges only")
+    if let Some(reason) = it.unfilled() {
+        EffectState::left_out(reason)
     } else if it.draw.part_pipelines.iter().all(Option::is_none) {
         EffectState::left_out("every part is hidden, or its opacity is too low")
     } else {
@@ -197,12 +208,11 @@ fn normals(it: &Facts<'_>) -> EffectState {
         Normals::Vertex => "of vertices, interpolated",
         Normals::Face => "of faces",
     };
-    let left_out = match it.settings.light {
-        _ if !it.draw.filled => "edges only",
+    let left_out = it.unfilled().unwrap_or(match it.settings.light {
         LightAt::Face => "light is evaluated at faces",
         LightAt::Vertex => "light is evaluated at vertices",
         LightAt::Pixel | LightAt::Sample => "no light reads them",
-    };
+    });
     let per_pixel = it.settings.light == LightAt::Pixel;
     any(it, |shaded| per_pixel && shaded.needs_positions, whose)
         .unwrap_or(EffectState::left_out(left_out))
@@ -216,8 +226,8 @@ fn texture(it: &Facts<'_>) -> EffectState {
         Filter::Anisotropic => "anisotropic",
     };
     // The first reason that applies: the view, the object, the mesh, the file.
-    let left_out = if !it.draw.filled {
-        "edges only"
+    let left_out = if let Some(reason) = it.unfilled() {
+        reason
     } else if it.object.surface == Surface::Material {
         "only the material is shown"
     } else if it.object.model.mesh.uvs().is_empty() {
@@ -261,11 +271,10 @@ fn emission(it: &Facts<'_>) -> EffectState {
         "Ke times map_Ke",
     );
     let plain = any(it, |shaded| shaded.extras.emission.is_some(), "Ke");
-    let left_out = match it.object.surface {
-        _ if !it.draw.filled => "edges only",
+    let left_out = it.unfilled().unwrap_or(match it.object.surface {
         Surface::Texture => "the texture is shown, not lit",
         Surface::Material | Surface::TextureAndLight => "Ke is 0",
-    };
+    });
     mapped.or(plain).unwrap_or(EffectState::left_out(left_out))
 }
 
@@ -287,13 +296,12 @@ fn maps(it: &Facts<'_>) -> EffectState {
         return EffectState::On(on.into());
     }
     let named = names(it, &[MapKind::Ambient, MapKind::Specular, MapKind::Exponent]);
-    EffectState::left_out(match it.settings.light {
-        _ if !it.draw.filled => "edges only",
+    EffectState::left_out(it.unfilled().unwrap_or(match it.settings.light {
         _ if !named => "the file has none",
         _ if it.object.model.mesh.uvs().is_empty() => "the model has no texture coordinates",
         LightAt::Face | LightAt::Vertex => "no light at pixels reads them",
         LightAt::Pixel | LightAt::Sample => "no light reads them",
-    })
+    }))
 }
 
 fn bumps(it: &Facts<'_>) -> EffectState {
@@ -304,21 +312,20 @@ fn bumps(it: &Facts<'_>) -> EffectState {
     };
     let normals = any(it, |shaded| shaded.extras.bump.is_some(), format!("normals, {tangents}"));
     let heights = any(it, heights, format!("heights, {tangents}"));
-    let left_out = match it.settings.light {
-        _ if !it.draw.filled => "edges only",
+    let left_out = it.unfilled().unwrap_or(match it.settings.light {
         _ if !names(it, &[MapKind::Bump, MapKind::Normal]) => "the file has none",
         _ if it.object.model.mesh.uvs().is_empty() => "the model has no texture coordinates",
         LightAt::Face => "light is evaluated at faces",
         LightAt::Vertex => "light is evaluated at vertices",
         LightAt::Pixel | LightAt::Sample => "no light reads them, or their -bm is 0",
-    };
+    });
     // `normals` holds for both kinds of map, so heights are preferred.
     heights.or(normals).unwrap_or(EffectState::left_out(left_out))
 }
 
 fn vertex_colors(it: &Facts<'_>) -> EffectState {
-    let left_out = if !it.draw.filled {
-        "edges only"
+    let left_out = if let Some(reason) = it.unfilled() {
+        reason
     } else if it.object.surface == Surface::Material {
         "only the material is shown"
     } else if it.object.model.mesh.colors().is_empty() {
@@ -332,7 +339,7 @@ fn vertex_colors(it: &Facts<'_>) -> EffectState {
 fn strokes(it: &Facts<'_>) -> EffectState {
     match &it.draw.strokes {
         Some(drawn) if drawn.vertex_colors => EffectState::On("in the colours of vertices".into()),
-        Some(_) => EffectState::On("in Kd".into()),
+        Some(_) => EffectState::On("in Kd; without a material, in the colour of edges".into()),
         None if it.object.model.mesh.strokes().is_empty() => {
             EffectState::left_out("the file has none")
         }

@@ -2,9 +2,11 @@
 
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
+use super::stroke_width;
 use crate::frame::Viewport;
 use crate::lights::region::Region;
 use crate::screen::clip::Screen;
+use crate::screen::coverage::SUBPIXELS;
 use marraztu_core::accuracy::{Resolution, Shot};
 use marraztu_core::base::image::Size;
 use marraztu_core::base::math;
@@ -99,6 +101,8 @@ pub(crate) struct ObserverSpace {
     pub(crate) size: Size,
     /// The size of the drawn picture.
     pub(crate) viewport: Viewport,
+    /// The distance in pixels at which a line may be drawn from its position.
+    line_reach: f64,
 }
 
 impl ObserverSpace {
@@ -128,6 +132,8 @@ impl ObserverSpace {
             clip_from_view: lens.clip_from_view(view.projection, size),
             size,
             viewport: drawn_viewport(size, shot.settings.resolution),
+            line_reach: LINE
+                .max(f64::from(stroke_width(view, shot.settings.resolution) / SUBPIXELS)),
         }
     }
 
@@ -136,7 +142,7 @@ impl ObserverSpace {
     pub(super) fn misses(&self, clip_from_object: DMat4, corners: [DVec3; 8]) -> bool {
         let clip = corners.map(|corner| clip_from_object * corner.extend(1.0));
         // The sides move outwards, because lines are drawn around their positions.
-        let aside = |pixels: f64| 1.0 + 2.0 * LINE / pixels;
+        let aside = |pixels: f64| 1.0 + 2.0 * self.line_reach / pixels;
         let (x, y) = (aside(self.viewport.width), aside(self.viewport.height));
         // A margin for rounding: nothing may be culled that geometry would keep.
         let beyond = |distance: &dyn Fn(DVec4) -> f64| {
@@ -155,7 +161,7 @@ impl ObserverSpace {
     pub(super) fn spheres_outside(&self) -> SpherePlanes {
         let rows = (self.clip_from_view * self.view_from_world).transpose();
         let [x, y, z, w] = [rows.x_axis, rows.y_axis, rows.z_axis, rows.w_axis];
-        let aside = |pixels: f64| 1.0 + 2.0 * LINE / pixels;
+        let aside = |pixels: f64| 1.0 + 2.0 * self.line_reach / pixels;
         let (wx, wy) = (w * aside(self.viewport.width), w * aside(self.viewport.height));
         let sizes = [x, y, z, w].map(|row| row.abs());
         // The rounding error of a plane's distance is relative to these sums.
@@ -227,8 +233,8 @@ impl SpherePlanes {
 /// The margin of spheres: larger than that of [`ObserverSpace::misses`], so both tests agree.
 const MARGIN: f64 = 1e-8;
 
-/// The distance in pixels at which a line may be drawn from its position: half of its width, and
-/// half a pixel of rounding.
+/// The distance in pixels at which an edge may be drawn from its position: half of its width, and
+/// half a pixel of rounding. Strokes of models may be wider.
 const LINE: f64 = 2.0;
 
 /// Twice the largest distance, in pixels, that snapping moves a position.

@@ -83,9 +83,9 @@ impl Thing<'_> {
             && is_turned_away(self.draw, self.observer.viewport)
     }
 
-    /// Returns whether its polygons are filled.
-    pub(crate) const fn is_filled(&self) -> bool {
-        self.draw.filled
+    /// Returns whether it has polygons, and they are filled.
+    pub(crate) fn is_filled(&self) -> bool {
+        self.draw.filled && self.draw.model.mesh.polygon_count() > 0
     }
 
     const fn draws_normals(&self) -> bool {
