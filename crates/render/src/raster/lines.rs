@@ -617,10 +617,12 @@ mod tests {
     fn a_point_covers_the_centres_in_its_disc_and_always_its_own_pixel() {
         let mut rng = Rng::new(6);
         let mut random = move |most: i32| rng.between(0, most);
-        for _ in 0..5000 {
+        for i in 0..5000 {
             let (x, y, width) = (random(30 * 256), random(30 * 256), SUBPIXELS + 2 * random(700));
-            let ends = [ScreenVertex::new(Snapped { x, y }, 0.5); 2];
-            let point = ScreenLine { is_point: true, ..line(ends, width, Grid::Usual) };
+            let grid = if i % 2 == 0 { Grid::Usual } else { Grid::Fine };
+            let times = grid.parts() / SUBPIXELS;
+            let ends = [ScreenVertex::new(Snapped { x: x * times, y: y * times }, 0.5); 2];
+            let point = ScreenLine { is_point: true, ..line(ends, width, grid) };
             let mut got = Vec::new();
             pixels(&point, EVERYWHERE, |x, y, _| got.push([x, y]));
             let is_in = |[column, row]: &[i32; 2]| {

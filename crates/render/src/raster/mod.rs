@@ -4,9 +4,9 @@
 //! `work` after another: `setup` and `edges` put possibly visible primitives into `bins` (tile
 //! binning). `small` rasterises small triangles immediately, to `hits`. With several samples per
 //! pixel, they wait for their tile in `tile_queues` instead. A `tile` then draws its hits and
-//! queues, `large` triangles and `lines`, all with a depth test (lines are edges, normals, and the
-//! `strokes` of models). The nearest primitive stays in the
-//! `visibility_buffer`. `layers` are the transparent triangles in front of it.
+//! queues, `large` triangles and `lines`, all with a depth test: lines are edges, normals, and the
+//! `strokes` of models. The nearest primitive stays in the `visibility_buffer`. `layers` are the
+//! transparent triangles in front of it.
 //!
 //! Alternatives selected by the settings are variants of the same kernels: each `rule` of coverage
 //! and each `depth_format` is a type that kernels are compiled for. `vertex_variants` transforms

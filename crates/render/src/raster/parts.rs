@@ -18,7 +18,9 @@ use super::work::{What, Work};
 use crate::accel::CLUSTER;
 use crate::cancellation::Cancellation;
 use crate::frame::FramePlan;
+use crate::frame::draw::Draw;
 use crate::screen::clip::Screen;
+use crate::screen::coverage::Grid;
 use crate::work_stealing::{WorkStealing, own, together};
 
 /// Runs the work on all threads, each with separate bins, unless cancelled.
@@ -95,9 +97,7 @@ impl Parts<'_> {
                 self.edge_setup(i).add_normals(level, (first, normals), bins);
             }
             What::Strokes => {
-                let grid = plan.raster_mode().grid;
-                let screen = Screen::new(draw.clip_from_object, plan.viewport).on(grid);
-                let screen = screen.seen_from(grid.offset(plan.shift));
+                let (screen, grid) = self.screen(draw);
                 let (first, width) = (start.stroke, plan.stroke_width);
                 StrokeSetup { draw, screen, grid, first, width }.run(level, from..to, bins);
             }
@@ -107,12 +107,17 @@ impl Parts<'_> {
         }
     }
 
+    /// Returns the transform of a draw's positions to the screen, and the grid of the frame.
+    fn screen(&self, draw: &Draw) -> (Screen, Grid) {
+        let grid = self.plan.raster_mode().grid;
+        let screen = Screen::new(draw.clip_from_object, self.plan.viewport).on(grid);
+        (screen.seen_from(grid.offset(self.plan.shift)), grid)
+    }
+
     fn edge_setup(&self, i: usize) -> EdgeSetup<'_> {
         let Self { plan, inputs, .. } = *self;
         let (draw, first) = (&plan.draws[i], inputs.starts[i].line);
-        let grid = plan.raster_mode().grid;
-        let screen = Screen::new(draw.clip_from_object, plan.viewport).on(grid);
-        let screen = screen.seen_from(grid.offset(plan.shift));
+        let (screen, grid) = self.screen(draw);
         let (vertices, outlines) = (inputs.corners_of(i), inputs.outlines_of(plan, i));
         EdgeSetup { draw, vertices, screen, grid, outlines, first, width: plan.line_width }
     }
