@@ -122,7 +122,7 @@ impl Studio {
         &self.shot
     }
 
-    /// Says what a pixel of the last picture shows, such as "polygon 12 of chair", counted from 1.
+    /// Names the primitive at a pixel of the last picture: "polygon 12 of chair", counted from 1.
     pub fn seen(&mut self, [x, y]: [usize; 2]) -> Option<String> {
         let hit = self.renderer.hit(x, y)?;
         let name = self.shot.scene.name(hit.item)?;

@@ -57,7 +57,7 @@ impl StrokeSetup<'_> {
             let number = LineNumber::new(first + number(i), false).bits();
             let line = ScreenLine { ends, number, nearer, grid, width, is_point };
             bins.add_line(line);
-            // Wide lines have round ends, which join those of a polyline.
+            // Round ends close the corners of wide polylines.
             if !is_point && width > ROUND {
                 for end in ends {
                     bins.add_line(ScreenLine { ends: [end; 2], is_point: true, ..line });
