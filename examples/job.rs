@@ -208,7 +208,7 @@ fn run(job: &Job) -> Result<String, Failure> {
         line += &format!("\nT,{label}{stages}");
     }
     let Some(plain) = measured.plain else { return Ok(line) };
-    let RayCount { traced, occluded } = measured.rays;
+    let RayCount { traced, occluded, .. } = measured.rays;
     let drawn = format!("{label},{mesh},{triangles},{mode},{width}x{height},{frames}");
     let times = format!("{shortest:.3},{plain:.3},{:.3}", shortest - plain);
     Ok(format!("{line}\nS,{drawn},{times},{traced},{occluded}"))
@@ -416,11 +416,9 @@ fn stage(
         }
     };
     let material = MaterialChoice::Own(Material {
-        ambient,
-        diffuse,
         specular,
         exponent: 32.0,
-        emission: [0.0; 3],
+        ..Material::matte(ambient, diffuse)
     });
     let mut scene = Scene::with_camera(Camera {
         name: "camera".to_owned(),

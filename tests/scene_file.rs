@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 
 use glam::{DMat4, DVec3};
 use marraztu_core::accuracy::{
-    Arithmetic, BumpFilter, Coverage, DepthFormat, Filter, FormerAxis, Interpolation, LightAt,
-    LightValues, NormalMatrix, Resolution, Rounding, Samples, Settings, ShadowMethod, SpecularForm,
-    Subpixels, Tangents, Terminator, Transparency, VertexArithmetic,
+    Arithmetic, Bounces, BumpFilter, Coverage, DepthFormat, Filter, FormerAxis, Interpolation,
+    LightAt, LightValues, NormalMatrix, Resolution, Rounding, Samples, Settings, ShadowMethod,
+    SpecularForm, Subpixels, Tangents, Terminator, Transparency, VertexArithmetic,
 };
 use marraztu_core::base::Shared;
 use marraztu_core::base::color::Color;
@@ -19,9 +19,9 @@ use marraztu_core::edit::items::set_crease;
 use marraztu_core::scene::{
     Aim, Attenuation, BumpMaps, Camera, CameraId, CameraMode, Command, Crease, Fill, Frame, Item,
     Lens, Light, LightId, LightKind, LoadOptions, Material, MaterialChoice, NormalLength, Normals,
-    Object, ObjectId, Observer, Orbit, PolygonMode, Pose, PresetId, Projection, Scale, Scene,
-    Sides, Spin, SpotOwner, Steps, Subject, Surface, Texture, Tracked, Transformation, UpAxis,
-    View, Winding, Wrap,
+    Object, ObjectId, Observer, Optics, Orbit, PolygonMode, Pose, PresetId, Projection, Reflection,
+    Scale, Scene, Sides, Spin, SpotOwner, Steps, Subject, Surface, Texture, Tracked,
+    Transformation, Transmission, UpAxis, View, Winding, Wrap,
 };
 use marraztu_io::{
     FindingKind, Panels, Progress, SceneFileError, WindowState, default_scene, load, load_texture,
@@ -79,6 +79,11 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         material: MaterialChoice::Own(Material {
             exponent: 7.25,
             emission: [0.5, 0.0, 2.0],
+            optics: Optics {
+                reflection: Reflection::Fresnel,
+                transmission: Transmission::Filter([0.25, 0.5, 1.0]),
+                index: 1.625,
+            },
             ..Material::default()
         }),
         surface: Surface::Texture,
@@ -190,6 +195,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         transparency: Transparency::Objects,
         shadow_method: ShadowMethod::Map2048Pcf,
         terminator: Terminator::Smooth,
+        bounces: Bounces::Two,
         former_normalising: FormerAxis,
         former_faint: FormerAxis,
         former_power: FormerAxis,

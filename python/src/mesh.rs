@@ -177,13 +177,7 @@ impl Copied {
     fn model(self) -> Result<Model, Failure> {
         let Self { name, corners, crease, .. } = self;
         // Like a file's texture without coefficients: shown in its own colours.
-        let white = Material {
-            ambient: [0.2; 3],
-            diffuse: [1.0; 3],
-            specular: [0.0; 3],
-            exponent: 1.0,
-            emission: [0.0; 3],
-        };
+        let white = Material::matte([0.2; 3], [1.0; 3]);
         let is_colored = self.texture.is_some() || !self.colors.is_empty();
         let material = match self.material {
             None | Some(MaterialChoice::File) if is_colored => white,

@@ -70,7 +70,8 @@ impl MaterialValue {
                 let factors = [ambient, diffuse, specular].into_iter().flatten();
                 let all_right = factors.into_iter().all(|x| (0.0..=1.0).contains(&x))
                     && emission.into_iter().chain([exponent]).all(|x| x >= 0.0 && x.is_finite());
-                let material = Material { ambient, diffuse, specular, exponent, emission };
+                let plain = Material::matte(ambient, diffuse);
+                let material = Material { specular, exponent, emission, ..plain };
                 let reason = "ambient, diffuse and specular are factors from 0 to 1; exponent and \
                               emission are at least 0";
                 all_right
@@ -95,7 +96,7 @@ pub(crate) struct Coefficients {
 #[pyfunction]
 pub(crate) fn materials() -> Vec<(&'static str, Coefficients)> {
     let values = |material: Material| {
-        let Material { ambient, diffuse, specular, exponent, emission } = material;
+        let Material { ambient, diffuse, specular, exponent, emission, optics: _ } = material;
         Coefficients { ambient, diffuse, specular, exponent, emission }
     };
     PRESETS.iter().map(|preset| (preset.name, values(preset.material))).collect()

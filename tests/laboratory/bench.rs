@@ -136,7 +136,7 @@ fn textured_scene() -> (marraztu_core::scene::Scene, marraztu_core::scene::View)
     let options = LoadOptions::default();
     let loaded = io::parse(text, "triangle.obj", None, &options, &io::Progress::new()).unwrap();
     let [ambient, diffuse, specular] = [[0.5; 3]; 3];
-    let material = Material { ambient, diffuse, specular, exponent: 32.0, emission: [0.0; 3] };
+    let material = Material { specular, exponent: 32.0, ..Material::matte(ambient, diffuse) };
     let mut object = Object::new(Shared::new(loaded.model), MaterialChoice::Own(material));
     let stretch = glam::DMat4::from_scale(glam::DVec3::new(1.0, 2.0, 1.0));
     object.placement = Tracked::new(stretch);

@@ -7,8 +7,8 @@ use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::base::once::get_or_compute;
 use marraztu_core::base::rng::Rng;
 use marraztu_core::scene::{
-    FileMaterial, MapKind, Material, Mesh, MeshSource, Model, NONE, Part, SourceCorner, SurfaceMap,
-    SurfaceMaps, Texture, Undrawn, Wrap,
+    FileMaterial, MapKind, Material, Mesh, MeshSource, Model, NONE, Optics, Part, Reflection,
+    SourceCorner, SurfaceMap, SurfaceMaps, Texture, Transmission, Undrawn, Wrap,
 };
 
 /// Coefficients on both sides of the thresholds for leaving terms out.
@@ -142,7 +142,24 @@ pub(crate) fn material(rng: &mut Rng) -> Material {
     let exponent = rng.one_of(&[0.0, 1.0, 5.0, 32.0, 128.0, 1000.0]);
     let emission =
         if rng.percent(70) { [0.0; 3] } else { [0; 3].map(|_| rng.one_of(&[0.0, 0.2, 3.0])) };
-    Material { ambient, diffuse, specular, exponent, emission }
+    let optics = optics(rng);
+    Material { ambient, diffuse, specular, exponent, emission, optics }
+}
+
+/// Random mirrors and refraction; most materials have neither.
+fn optics(rng: &mut Rng) -> Optics {
+    if rng.percent(90) {
+        return Optics::NONE;
+    }
+    Optics {
+        reflection: rng.one_of(&Reflection::ALL),
+        transmission: rng.one_of(&[
+            Transmission::None,
+            Transmission::Opacity,
+            Transmission::Filter([0.9, 1.0, 0.4]),
+        ]),
+        index: rng.one_of(&[1.0, 1.33, 1.5, 0.7]),
+    }
 }
 
 /// Random maps, each present with a random probability.

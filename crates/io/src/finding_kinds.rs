@@ -210,8 +210,8 @@ kinds! {
         "material \"@\": with bsdf pbr, Ks is taken as occlusion, roughness and metalness",
         "# materials: with bsdf pbr, Ks is taken as occlusion, roughness and metalness";
     Illumination [Joined]:
-        "material \"@\": illum is not 0, 1 or 2: it is drawn as 2, without mirrors and refraction",
-        "# materials: illum is not 0, 1 or 2: it is drawn as 2, without mirrors and refraction";
+        "material \"@\": illum is not a whole number from 0 to 7: it is drawn as 2",
+        "# materials: illum is not a whole number from 0 to 7: it is drawn as 2";
     MendedRange [Joined]:
         "material \"@\": a value is outside 0 to 1 and is clamped",
         "# values of materials are outside 0 to 1 and are clamped";

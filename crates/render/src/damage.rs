@@ -54,6 +54,8 @@ pub enum DamageCause {
     Settings,
     /// A shadow-casting light or a caster changed.
     Shadows,
+    /// Something changed that a surface may mirror, or show through refraction.
+    Surroundings,
     /// The order of draws changed, which decides between equal depths.
     Order,
     /// These items changed. An empty list means that the picture stays the same.
@@ -183,6 +185,7 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
         shadows,
         draws: _,
         pipelines: _,
+        surroundings: _,
         rules,
         light_ids: _,
     } = after;
@@ -209,7 +212,21 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
         () if !shadows.is_same(&before.shadows) && !shadow_reach::is_known(before, after) => {
             Some(DamageCause::Shadows)
         }
+        () if !have_same_surroundings(before, after) => Some(DamageCause::Surroundings),
         () => None,
+    }
+}
+
+/// Returns whether rays see the same in both plans.
+fn have_same_surroundings(before: &FramePlan, after: &FramePlan) -> bool {
+    match (before.surroundings.as_deref(), after.surroundings.as_deref()) {
+        (None, None) => true,
+        (Some(before), Some(after)) => {
+            let Damage { tiles, cause, .. } = Damage::between(before, after);
+            let is_alike = matches!(cause, DamageCause::Items(items) if items.is_empty());
+            is_alike && tiles.count() == 0 && after.shadows.is_same(&before.shadows)
+        }
+        _ => false,
     }
 }
 

@@ -57,6 +57,7 @@ mod lights;
 mod picture_camera;
 pub mod plan;
 mod raster;
+mod rays;
 mod renderer;
 pub mod screen;
 mod shading;

@@ -14,7 +14,7 @@ use std::sync::{Mutex, PoisonError};
 
 use fearless_simd::Level;
 
-use super::shading::context::ShadingContext;
+use super::shading::context::{Around, OffScreen, ShadingContext};
 use super::shading::face_colors::FaceColors;
 use super::shading::light::Lit;
 use super::shading::painter::{Band, Filled, Painter, TileSums};
@@ -361,7 +361,7 @@ impl Renderer {
         self.timings
     }
 
-    /// Returns the shadow rays of the last picture.
+    /// Returns the rays of the last picture.
     #[must_use]
     pub const fn rays(&self) -> RayCount {
         self.rays
@@ -400,7 +400,7 @@ impl Renderer {
         // Shadow maps and the cache of face colours come first: all threads read them.
         let mut laps = Laps::start();
         self.maps.update(self.level, plan, watch);
-        let ShadingCache { terms, lit, faces, paths, painters } = cache;
+        let ShadingCache { terms, around_terms, lit, faces, paths, painters } = cache;
         choose(plan, paths);
         let looks_up = paths.looks_up_faces && !self.frame.sample_positions().are_many();
         if looks_up {
@@ -410,7 +410,14 @@ impl Renderer {
         let tracer = Tracer::new(plan, &self.maps).map(|it| it.with_known(self.shadows.known()));
         let tracer = tracer.as_ref();
         let faces = looks_up.then_some(&*faces);
-        let context = ShadingContext { level, plan, frame, lit, terms, faces, paths, tracer };
+        let off_screen = OffScreen::default();
+        let around_plan = plan.surroundings.as_deref();
+        let around_tracer = around_plan.and_then(|around| Tracer::new(around, &self.maps));
+        let inputs = (&*lit, &*around_terms, around_tracer.as_ref());
+        let around = Around::new(level, plan, inputs, &off_screen);
+        let around = around.as_ref();
+        let context =
+            ShadingContext { level, plan, frame, lit, terms, faces, paths, tracer, around };
         let first_row = self.first_row;
         let Size { width, .. } = plan.size;
         let columns = width.div_ceil(TILE_SIDE);
@@ -451,7 +458,7 @@ impl Renderer {
         // Painters count separately, so that threads share no counter while they draw.
         for painter in painters {
             let painter = painter.into_inner().unwrap_or_else(PoisonError::into_inner);
-            self.rays += painter.shader.rays.count;
+            self.rays += painter.shader.ray_count();
             self.path_pixels += painter.shader.path_pixels;
         }
         self.timings.tiles += laps.lap();
@@ -471,6 +478,8 @@ struct Pass<'a> {
 #[derive(Debug, Default)]
 struct ShadingCache<T> {
     terms: LightTerms<T>,
+    /// The light terms of the surroundings.
+    around_terms: LightTerms<T>,
     lit: Lit<T>,
     faces: FaceColors,
     paths: ColorPaths,
@@ -481,6 +490,9 @@ struct ShadingCache<T> {
 impl<T: PathNumber> ShadingCache<T> {
     fn prepare(&mut self, plan: &FramePlan) {
         self.terms.prepare(plan);
+        if let Some(around) = &plan.surroundings {
+            self.around_terms.prepare(around);
+        }
         self.lit.prepare(plan);
     }
 }

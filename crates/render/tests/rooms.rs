@@ -16,6 +16,7 @@ const ROOMS: &[&str] = &[
     "ancestors",
     "raster",
     "shadow",
+    "rays",
     "shading",
     "tile_layers",
     "picture_camera",

@@ -262,8 +262,7 @@ fn colors(
                 let Material { specular, exponent, .. } = object.part_look(0).material;
                 let diffuse = color.factors();
                 let ambient = diffuse.map(|part| 0.2 * part);
-                let emission = [0.0; 3];
-                let own = Material { ambient, diffuse, specular, exponent, emission };
+                let own = Material { specular, exponent, ..Material::matte(ambient, diffuse) };
                 object.material = MaterialChoice::Own(own);
             };
             let hint = "Gives it a custom material in this colour.";

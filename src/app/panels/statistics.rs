@@ -64,6 +64,7 @@ fn redrawn(state: &State, changes: &Damage) -> String {
         DamageCause::Background => "background changed".to_owned(),
         DamageCause::Settings => "settings changed".to_owned(),
         DamageCause::Shadows => "shadows changed".to_owned(),
+        DamageCause::Surroundings => "what mirrors show changed".to_owned(),
         DamageCause::Order => "order changed".to_owned(),
         DamageCause::Items(items) => reasons(items, |item| state.name(item)),
     };

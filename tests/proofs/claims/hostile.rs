@@ -17,8 +17,9 @@ use marraztu_core::edit::{GesturePhase, placement};
 use marraztu_core::scene::{
     Aim, Attenuation, Camera, CameraId, Command, Fill, Frame, Item, Lens, Light, LightId,
     LightKind, Material, MaterialChoice, Mesh, MeshSource, Model, NONE, NormalLength, Normals,
-    Object, ObjectId, Observer, Orbit, Part, Pose, PresetId, Projection, Scene, Sides,
-    SourceCorner, Spin, SpotOwner, Subject, Surface, Texture, Tracked, Transformation, View, Wrap,
+    Object, ObjectId, Observer, Optics, Orbit, Part, Pose, PresetId, Projection, Reflection, Scene,
+    Sides, SourceCorner, Spin, SpotOwner, Subject, Surface, Texture, Tracked, Transformation,
+    Transmission, View, Wrap,
 };
 
 /// Applies a command, or checks that a refused one changes nothing.
@@ -230,6 +231,19 @@ impl Hostile {
             specular,
             exponent: self.amount(128.0),
             emission: [self.amount(2.0), 0.0, 0.0],
+            optics: self.optics(),
+        }
+    }
+
+    fn optics(&mut self) -> Optics {
+        Optics {
+            reflection: self.rng.one_of(&Reflection::ALL),
+            transmission: match self.rng.index(4) {
+                0 => Transmission::Opacity,
+                1 => Transmission::Filter(std::array::from_fn(|_| self.amount(1.0))),
+                _ => Transmission::None,
+            },
+            index: self.amount(2.0),
         }
     }
 

@@ -32,6 +32,7 @@ pub struct Settings {
     #[serde(rename = "shadow-method")]
     pub shadow_method: ShadowMethod,
     pub terminator: Terminator,
+    pub bounces: Bounces,
     #[serde(rename = "values")]
     pub light_values: LightValues,
     /// An axis of older scene files.
@@ -350,4 +351,46 @@ pub enum Terminator {
     Triangles,
     /// On the curved surface that vertex normals suggest.
     Smooth,
+}
+
+/// How often a ray is mirrored or refracted, written as a number.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(into = "u16", try_from = "u16")]
+pub enum Bounces {
+    /// Never: surfaces show nothing of their surroundings.
+    None = 0,
+    /// Once: what mirrors show does not mirror anything.
+    One = 1,
+    /// Twice.
+    Two = 2,
+    /// Four times.
+    #[default]
+    Four = 4,
+    /// Eight times.
+    Eight = 8,
+}
+
+impl Bounces {
+    /// All of them, from none to the most.
+    pub const ALL: [Self; 5] = [Self::None, Self::One, Self::Two, Self::Four, Self::Eight];
+
+    /// The number of bounces.
+    pub const fn count(self) -> u32 {
+        self as u32
+    }
+}
+
+impl From<Bounces> for u16 {
+    fn from(bounces: Bounces) -> Self {
+        bounces as Self
+    }
+}
+
+impl TryFrom<u16> for Bounces {
+    type Error = String;
+
+    fn try_from(count: u16) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|bounces| u16::from(*bounces) == count);
+        found.ok_or_else(|| format!("a ray bounces 0, 1, 2, 4 or 8 times, not {count}"))
+    }
 }

@@ -2,6 +2,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::Optics;
+
 /// The coefficients of Phong's model, as factors from 0 to 1, and the exponent of its highlight.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Material {
@@ -16,12 +18,22 @@ pub struct Material {
     /// The emitted light, which no other light changes: Ke. It may be more than 1.
     #[serde(default, skip_serializing_if = "is_dark")]
     pub emission: [f64; 3],
+    /// Mirrors and refraction.
+    #[serde(default, skip_serializing_if = "Optics::is_none")]
+    pub optics: Optics,
 }
 
 impl Material {
     /// Creates a material without highlights and without light of its own.
     pub const fn matte(ambient: [f64; 3], diffuse: [f64; 3]) -> Self {
-        Self { ambient, diffuse, specular: [0.0; 3], exponent: 1.0, emission: [0.0; 3] }
+        Self {
+            ambient,
+            diffuse,
+            specular: [0.0; 3],
+            exponent: 1.0,
+            emission: [0.0; 3],
+            optics: Optics::NONE,
+        }
     }
 }
 
@@ -100,7 +112,7 @@ impl TryFrom<String> for PresetId {
 
 const fn preset(name: &'static str, rows: [[f64; 3]; 3], exponent: f64) -> Preset {
     let [ambient, diffuse, specular] = rows;
-    Preset { name, material: Material { ambient, diffuse, specular, exponent, emission: [0.0; 3] } }
+    Preset { name, material: Material { specular, exponent, ..Material::matte(ambient, diffuse) } }
 }
 
 /// The nineteen preset materials, in the order of the picker.

@@ -14,6 +14,7 @@ mod mesh;
 mod missing;
 mod model;
 mod object;
+mod optics;
 mod shapes;
 mod smoothing;
 mod spheres;
@@ -46,6 +47,7 @@ pub use model::{
     BumpMaps, FileMaterial, LoadOptions, Model, Scale, Undrawn, UndrawnMap, UpAxis, Winding,
 };
 pub use object::{Object, PartLook, Sides, Spin, Surface};
+pub use optics::{Optics, Reflection, Transmission};
 pub use shapes::Shape;
 pub use smoothing::{Crease, Smoothing};
 pub use spheres::Spheres;

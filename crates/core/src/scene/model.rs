@@ -229,7 +229,7 @@ pub struct FileMaterial {
     pub unlit: bool,
     /// Whether vertex colours multiply the texture, rather than being replaced by it.
     pub multiplies_colors: bool,
-    /// The numbers of statements that do not affect pictures, such as `Ni` and `Pr`, for exports.
+    /// The numbers of further statements, such as `Pr` and `sharpness`, for exports.
     pub undrawn: Undrawn,
     /// The maps that do not affect pictures, such as `map_Pr` and `refl`, for exports.
     pub undrawn_maps: Vec<UndrawnMap>,
@@ -283,7 +283,7 @@ impl UndrawnMap {
     }
 }
 
-/// The numbers of statements that do not affect pictures, by the usual spelling of the keyword.
+/// The numbers of statements that exports pass on, by the usual spelling of the keyword.
 pub type Undrawn = BTreeMap<&'static str, Vec<f64>>;
 
 #[cfg(test)]

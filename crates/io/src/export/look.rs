@@ -12,7 +12,7 @@ use super::part_look::{Look, RoughMetal};
 use marraztu_core::base::Shared;
 use marraztu_core::scene::{
     FileMaterial, MapKind, Material, MaterialChoice, Object, PresetId, Stroke, Surface, Texture,
-    UndrawnMap, Wrap,
+    Transmission, UndrawnMap, Wrap,
 };
 
 /// The level of detail at which a format distinguishes materials.
@@ -57,10 +57,16 @@ struct Key {
 impl Key {
     /// Returns the key of a look, with its wanted name.
     fn of(look: &Look) -> Self {
-        let Material { ambient, diffuse, specular, exponent, emission } = look.material;
-        let colors = [ambient, diffuse, specular, emission, look.base];
+        let Material { ambient, diffuse, specular, exponent, emission, optics } = look.material;
+        let filter = match optics.transmission {
+            Transmission::None => [0.0; 3],
+            Transmission::Opacity => [-1.0; 3],
+            Transmission::Filter(filter) => filter,
+        };
+        let colors = [ambient, diffuse, specular, emission, look.base, filter];
         let flags = [look.two_sided, look.unlit, look.colored].map(u64::from);
-        let numbers = colors.into_iter().flatten().chain([exponent, look.opacity]);
+        let rays = [optics.illumination(), optics.index];
+        let numbers = colors.into_iter().flatten().chain([exponent, look.opacity]).chain(rays);
         // Bits instead of floats make the key hashable and exact.
         let map = |kind, Texture { picture, wrap, offset, scale, .. }: &Texture, gain: f64| {
             let bits = [offset[0], offset[1], scale[0], scale[1], gain].map(f64::to_bits);

@@ -6,7 +6,9 @@
 use super::statements::Statements;
 use crate::findings::{BYTES_ABOVE, FindingKind, Findings};
 use marraztu_core::base::Shared;
-use marraztu_core::scene::{FileMaterial, MapKind, Material, SurfaceMaps, Texture};
+use marraztu_core::scene::{
+    FileMaterial, MapKind, Material, Optics, Reflection, SurfaceMaps, Texture, Transmission,
+};
 
 /// The largest exponent derived from roughness: files rarely exceed 1000.
 const NARROWEST: f64 = 1000.0;
@@ -37,12 +39,14 @@ impl Statements {
             }
         };
         let opacity = self.mended_opacity(&mut note);
+        let optics = self.optics();
         // Kd multiplies the texture, so black hides it.
         if texture.is_some() && self.diffuse == Some([0.0; 3]) {
             note(FindingKind::DiffuseBlack);
         }
         let emission = self.mended_emission(&mut note);
-        if self.illumination.is_some_and(|model| ![0.0, 1.0, 2.0].contains(&model)) {
+        let is_known = |model: f64| (0.0..=7.0).contains(&model) && model.fract() == 0.0;
+        if self.illumination.is_some_and(|model| !is_known(model)) {
             note(FindingKind::Illumination);
         }
         // Exporters write `illum 0` for textures that include light, but some for all materials.
@@ -53,7 +57,7 @@ impl Statements {
         }
         // Scans have vertex colours and a texture made from the same photographs.
         let multiplies_colors = texture.is_none();
-        let material = Material { ambient, diffuse, specular, exponent, emission };
+        let material = Material { ambient, diffuse, specular, exponent, emission, optics };
         let (name, undrawn, undrawn_maps) = (self.name, self.undrawn, Vec::new());
         FileMaterial {
             name,
@@ -66,6 +70,37 @@ impl Statements {
             undrawn,
             undrawn_maps,
         }
+    }
+
+    /// Returns what the surface shows of its surroundings.
+    fn optics(&self) -> Optics {
+        let (reflection, transmits) = match self.illumination {
+            Some(3.0 | 4.0) => (Reflection::Constant, false),
+            Some(5.0) => (Reflection::Fresnel, false),
+            Some(6.0) => (Reflection::Constant, true),
+            Some(7.0) => (Reflection::Fresnel, true),
+            _ => return Optics::NONE,
+        };
+        let index = self.undrawn.get("Ni").and_then(|numbers| numbers.first());
+        let filter = |color: [f64; 3]| Transmission::Filter(color.map(|x| x.clamp(0.0, 1.0)));
+        let transmission = match self.filter() {
+            _ if !transmits => Transmission::None,
+            Some(&[grey]) => filter([grey; 3]),
+            Some(&[r, g, b, ..]) => filter([r, g, b]),
+            _ => Transmission::Opacity,
+        };
+        let index = index.copied().filter(|index| Optics::INDICES.contains(index)).unwrap_or(1.0);
+        Optics { reflection, transmission, index }
+    }
+
+    fn is_mirror(&self) -> bool {
+        self.optics().reflection != Reflection::None
+    }
+
+    /// Returns the numbers of Tf, or of its other name Kt.
+    fn filter(&self) -> Option<&[f64]> {
+        let named = ["Tf", "Kt"].into_iter().find_map(|word| self.undrawn.get(word));
+        named.map(Vec::as_slice)
     }
 
     /// Emission may exceed 1, but not fall below 0.
@@ -143,6 +178,8 @@ impl Statements {
                 (specular, 1.0)
             }
             _ if specular == [0.0; 3] => (specular, 1.0),
+            // The highlight of a mirror is as narrow as its picture of the lamp.
+            _ if self.is_mirror() => (specular, NARROWEST),
             Some(_) | None => {
                 note(FindingKind::MendedMatt);
                 ([0.0; 3], 1.0)

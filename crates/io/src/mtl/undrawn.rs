@@ -1,5 +1,4 @@
-//! Keeps numbers and maps of a material that are not drawn, since exports pass them on to other
-//! programs.
+//! Keeps numbers and maps of a material that exports pass on to other programs.
 
 use super::map::Map;
 use super::statement;
@@ -9,7 +8,7 @@ use super::statements::Statements;
 const KEYWORDS: [&str; 11] =
     ["Ni", "Tf", "Kt", "sharpness", "Pr", "Pm", "Ps", "Pc", "Pcr", "aniso", "anisor"];
 
-/// The illumination models with reflection, refraction and shadows, which are drawn as model 2.
+/// The illumination models with reflection, refraction and shadows.
 const MODELS: std::ops::RangeInclusive<f64> = 3.0..=10.0;
 
 impl Statements {
@@ -24,7 +23,7 @@ impl Statements {
         true
     }
 
-    /// Keeps the number of an illumination model that is drawn as another.
+    /// Keeps the number of an illumination model that asks for more than model 2.
     pub(super) fn keep_model(&mut self) {
         self.undrawn.remove("illum");
         if let Some(model) = self.illumination.filter(|model| MODELS.contains(model)) {

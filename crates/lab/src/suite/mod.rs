@@ -117,6 +117,13 @@ pub const SUITE: &[SuiteScene] = &[
         time_only: &[],
         make: scenes::shadows,
     },
+    SuiteScene {
+        word: "mirrors",
+        what: "balls of glass and metal between two mirrors that face each other",
+        axes: &["bounces"],
+        time_only: &[],
+        make: scenes::mirrors,
+    },
 ];
 
 /// The size, thoroughness and detail of a suite run.

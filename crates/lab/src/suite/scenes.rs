@@ -13,8 +13,8 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{
     Aim, Camera, Light, LightId, LightKind, List, Material, MaterialChoice, Mesh, MeshSource,
-    Model, NONE, Object, ObjectId, Orbit, Part, Pose, Scene, Smoothing, SourceCorner, SpotOwner,
-    Surface, Texture, Tracked, View,
+    Model, NONE, Object, ObjectId, Optics, Orbit, Part, Pose, Reflection, Scene, Smoothing,
+    SourceCorner, SpotOwner, Surface, Texture, Tracked, Transmission, View,
 };
 use marraztu_io::{default_scene, empty_scene, own_model};
 
@@ -318,6 +318,47 @@ pub(super) fn shadows(detail: u32) -> (Scene, View) {
     };
     scene.lights = lights.map(cast).collect::<Vec<_>>().into_iter().collect();
     (scene, view)
+}
+
+/// Builds balls of glass and metal on a floor, between two mirrors that face each other.
+pub(super) fn mirrors(detail: u32) -> (Scene, View) {
+    let model = ball((detail / 25).clamp(8, 40));
+    let mut maker = Maker::default();
+    let corners = [[-300.0, 250.0], [300.0, 250.0], [300.0, -120.0], [-300.0, -120.0]];
+    let corners = corners.map(|[x, z]| maker.vertex([x, -60.0, z], None));
+    maker.polygon(&corners);
+    let floor = object(maker.model("floor"), shiny([0.8, 0.7, 0.5], 10.0), DMat4::IDENTITY);
+    let with_rays = |specular: [f64; 3], optics: Optics| {
+        let dark = Material::matte([0.02; 3], [0.05; 3]);
+        MaterialChoice::Own(Material { specular, exponent: 200.0, optics, ..dark })
+    };
+    let metal = Optics { reflection: Reflection::Constant, ..Optics::NONE };
+    let glass = Optics {
+        reflection: Reflection::Fresnel,
+        transmission: Transmission::Filter([0.95, 0.97, 1.0]),
+        index: 1.5,
+    };
+    let mirror = |z: f64, towards: f64| {
+        let mut maker = Maker::default();
+        let corners = [[-170.0, -55.0], [170.0, -55.0], [170.0, 90.0], [-170.0, 90.0]];
+        let corners = corners.map(|[x, y]| maker.vertex([x * towards, y, z], None));
+        maker.polygon(&corners);
+        object(maker.model("mirror"), with_rays([0.85, 0.9, 0.86], metal), DMat4::IDENTITY)
+    };
+    let balls = (0..10_u32).map(|i| {
+        let [column, row] = [i % 5, i / 5].map(f64::from);
+        let radius = 17.0 + 3.0 * f64::from(i % 3);
+        let at = DVec3::new(column * 56.0 - 105.0 - row * 20.0, radius - 60.0, 50.0 - row * 70.0);
+        let placement = DMat4::from_translation(at) * DMat4::from_scale(DVec3::splat(radius));
+        let material = match i % 3 {
+            0 => with_rays([0.04; 3], glass),
+            1 => with_rays([0.9, 0.75, 0.5], metal),
+            _ => shiny([0.8, 0.3, 0.2 + 0.1 * column], 30.0),
+        };
+        object(model.clone(), material, placement)
+    });
+    let walls = [floor, mirror(-110.0, 1.0), mirror(260.0, -1.0)];
+    stage(walls.into_iter().chain(balls).collect(), DVec3::new(0.0, 20.0, 230.0))
 }
 
 /// Returns a direction down and to the left.

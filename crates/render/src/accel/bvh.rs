@@ -23,6 +23,7 @@ use marraztu_core::base::math::each;
 use marraztu_core::scene::{Accelerator, AcceleratorPlace, Mesh};
 
 use super::draw_order::index;
+use super::eight_boxes::{Box3, EMPTY, EightBoxes, union};
 
 /// A BVH of a mesh's triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -81,29 +82,29 @@ impl BvhBlock {
 }
 
 /// The largest number of children of a node.
-const WIDTH: usize = 8;
+const WIDTH: usize = EightBoxes::COUNT;
 
 /// An inner node: the boxes of up to eight children, in four cache lines. Memory latency bounds the
 /// traversal of large trees, so wide nodes keep the number of levels low.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(align(64))]
 pub struct BvhNode {
-    boxes: [Box3; WIDTH],
-    children: [BvhChild; WIDTH],
+    pub(crate) boxes: EightBoxes,
+    pub(crate) children: [BvhChild; WIDTH],
 }
 
 impl Default for BvhNode {
     fn default() -> Self {
-        Self { boxes: [EMPTY; WIDTH], children: [BvhChild::NONE; WIDTH] }
+        Self { boxes: EightBoxes::default(), children: [BvhChild::NONE; WIDTH] }
     }
 }
 
 impl BvhNode {
     /// Returns the children, each with the smallest and the largest coordinates of its box.
     #[inline(always)]
-    pub fn children(&self) -> impl Iterator<Item = (&BvhChild, &[[f32; 3]; 2])> {
+    pub fn children(&self) -> impl Iterator<Item = (BvhChild, [[f32; 3]; 2])> {
         let children = self.children.iter().take_while(|child| **child != BvhChild::NONE);
-        children.zip(&self.boxes)
+        children.enumerate().map(|(i, child)| (*child, self.boxes.get(i)))
     }
 }
 
@@ -137,12 +138,6 @@ pub struct BvhTriangle {
     /// The triangle's index in [`Mesh::triangles`].
     pub number: u32,
 }
-
-/// A box: its smallest and its largest coordinates.
-type Box3 = [[f32; 3]; 2];
-
-/// A box without points.
-const EMPTY: Box3 = [[f32::INFINITY; 3], [f32::NEG_INFINITY; 3]];
 
 /// The largest number of boxes in a leaf, and the cost of a node relative to a box in a leaf.
 const LEAF: u32 = 8;
@@ -237,7 +232,7 @@ impl Bvh {
                     // Boxes of inner nodes wait for their children: see below.
                     if own.count > 0 {
                         let around = triangles.iter().map(|own| box_of(&own.corners));
-                        flat.nodes[at].boxes[child] = around.fold(EMPTY, union);
+                        flat.nodes[at].boxes.set(child, around.fold(EMPTY, union));
                     }
                 }
             }
@@ -247,8 +242,8 @@ impl Bvh {
             for child in 0..WIDTH {
                 let BvhChild { first, count } = flat.nodes[at].children[child];
                 if count == 0 && first != BvhChild::NONE.first {
-                    let around = flat.nodes[first as usize].boxes.into_iter().fold(EMPTY, union);
-                    flat.nodes[at].boxes[child] = around;
+                    let around = flat.nodes[first as usize].boxes.around();
+                    flat.nodes[at].boxes.set(child, around);
                 }
             }
         }
@@ -349,12 +344,6 @@ fn sorted(corners: &[[f32; 3]; 3]) -> [[u32; 3]; 3] {
 
 fn box_of(corners: &[[f32; 3]; 3]) -> Box3 {
     corners.iter().fold(EMPTY, |around, corner| union(around, [*corner; 2]))
-}
-
-fn union([low, high]: Box3, [other_low, other_high]: Box3) -> Box3 {
-    let least = |axis: usize| low[axis].min(other_low[axis]);
-    let largest = |axis: usize| high[axis].max(other_high[axis]);
-    [std::array::from_fn(least), std::array::from_fn(largest)]
 }
 
 /// Moves and scales boxes into the unit cube. Their order along each axis is kept.

@@ -8,9 +8,11 @@ mod bvh;
 mod clusters;
 mod draw_order;
 mod edge_order;
+mod eight_boxes;
 
 pub use accelerated::Accelerated;
 pub use bvh::{BVH_BLOCK, Bvh, BvhBlock, BvhChild, BvhNode, BvhTriangle};
 pub use clusters::{CLUSTER, Cluster, DrawTriangle};
 pub use draw_order::{DrawOrder, Points};
 pub use edge_order::{DrawEdge, EdgeOrder};
+pub use eight_boxes::EightBoxes;

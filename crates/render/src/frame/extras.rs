@@ -1,10 +1,10 @@
-//! Additional properties of a surface beyond light, one texture and vertex colours: emission, and
-//! maps of its coefficients and normals.
+//! Additional properties of a surface beyond light, one texture and vertex colours: emission, maps
+//! of its coefficients and normals, mirrors and refraction.
 
 use std::hash::{Hash, Hasher};
 
 use marraztu_core::base::Shared;
-use marraztu_core::scene::Texture;
+use marraztu_core::scene::{Reflection, Texture};
 
 /// The additional properties of a surface; none by default.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -20,6 +20,44 @@ pub(crate) struct Extras {
     pub(crate) exponent: Option<Shared<Texture>>,
     /// The map that tilts normals.
     pub(crate) bump: Option<Bump>,
+    /// Mirrors and refraction.
+    pub(crate) rays: Option<SurfaceRays>,
+}
+
+/// What a surface shows of its surroundings, by rays.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct SurfaceRays {
+    pub(crate) reflection: Reflection,
+    /// Ks.
+    pub(crate) specular: [f64; 3],
+    /// The fraction of light that passes through the surface.
+    pub(crate) transmission: [f64; 3],
+    /// The index of refraction.
+    pub(crate) index: f64,
+    /// The map of Ks.
+    pub(crate) map: Option<Shared<Texture>>,
+    /// Whether the surface is closed. Light passes through an open one unbent.
+    pub(crate) is_closed: bool,
+}
+
+impl SurfaceRays {
+    /// Returns whether the surface mirrors.
+    pub(crate) fn reflects(&self) -> bool {
+        self.reflection != Reflection::None
+    }
+
+    /// Returns whether light passes through the surface.
+    pub(crate) fn transmits(&self) -> bool {
+        self.transmission != [0.0; 3]
+    }
+
+    /// Returns all of its numbers.
+    fn numbers(&self) -> [f64; 9] {
+        let [r, g, b] = self.specular;
+        let [s, t, u] = self.transmission;
+        let kind = f64::from(self.reflection as u8);
+        [kind, f64::from(u8::from(self.is_closed)), self.index, r, g, b, s, t, u]
+    }
 }
 
 /// Light that is independent of the point it falls on.
@@ -41,20 +79,21 @@ pub(crate) struct Bump {
 impl Extras {
     /// Returns whether there are no additional properties.
     pub(crate) const fn is_empty(&self) -> bool {
-        let Self { emission, ambient, specular, exponent, bump } = self;
+        let Self { emission, ambient, specular, exponent, bump, rays } = self;
         emission.is_none()
             && ambient.is_none()
             && specular.is_none()
             && exponent.is_none()
             && bump.is_none()
+            && rays.is_none()
     }
 
     /// Returns the emission if it is the same at every pixel, or 0 without emission. `None` if
     /// there is any other property.
     pub(crate) fn even_glow(&self) -> Option<[f64; 3]> {
-        let Self { emission, ambient, specular, exponent, bump } = self;
+        let Self { emission, ambient, specular, exponent, bump, rays } = self;
         let is_else = ambient.is_some() || specular.is_some() || exponent.is_some();
-        if is_else || bump.is_some() {
+        if is_else || bump.is_some() || rays.is_some() {
             return None;
         }
         match emission {
@@ -65,9 +104,12 @@ impl Extras {
         }
     }
 
-    /// Returns whether the colour of a pixel depends on the map of a glow or of highlights.
+    /// Returns whether the colour of a pixel depends on the map of a glow or of highlights, or on
+    /// what rays see.
     pub(crate) fn reads_texels(&self) -> bool {
-        self.specular.is_some() || self.glows().any(|glow| glow.map.is_some())
+        self.specular.is_some()
+            || self.rays.is_some()
+            || self.glows().any(|glow| glow.map.is_some())
     }
 
     /// Returns whether there is a map of Ka, Ks or Ns.
@@ -82,12 +124,13 @@ impl Extras {
 
     /// Iterates over the maps of colours.
     pub(crate) fn colors(&self) -> impl Iterator<Item = &Shared<Texture>> {
-        self.glows().filter_map(|glow| glow.map.as_ref()).chain(&self.specular)
+        let of_rays = self.rays.iter().filter_map(|rays| rays.map.as_ref());
+        self.glows().filter_map(|glow| glow.map.as_ref()).chain(&self.specular).chain(of_rays)
     }
 
     /// Returns the names of the stages, for [`FramePlan::keys`](super::FramePlan::keys).
     pub(crate) fn key(&self) -> impl Iterator<Item = &'static str> {
-        let Self { emission, ambient, specular, exponent, bump } = self;
+        let Self { emission, ambient, specular, exponent, bump, rays } = self;
         let mapped = |glow: &Option<Glow>| glow.as_ref().is_some_and(|glow| glow.map.is_some());
         [
             ("emission", emission.is_some()),
@@ -98,6 +141,7 @@ impl Extras {
             // Only height maps have a gain.
             ("bump map", bump.as_ref().is_some_and(|bump| bump.gain.is_some())),
             ("normal map", bump.as_ref().is_some_and(|bump| bump.gain.is_none())),
+            ("rays", rays.is_some()),
         ]
         .into_iter()
         .filter_map(|(name, is)| is.then_some(name))
@@ -105,7 +149,7 @@ impl Extras {
 
     /// Hashes the properties that equal surfaces share; of maps, only their sources.
     pub(crate) fn hash_into(&self, hasher: &mut impl Hasher) {
-        let Self { emission, ambient, specular, exponent, bump } = self;
+        let Self { emission, ambient, specular, exponent, bump, rays } = self;
         for glow in [emission, ambient] {
             let glow = glow.as_ref();
             glow.map(|glow| glow.color.map(bits)).hash(hasher);
@@ -115,18 +159,20 @@ impl Extras {
             map.as_ref().map(|map| &map.source).hash(hasher);
         }
         bump.as_ref().map(|bump| (&bump.map.source, bump.gain.map(bits))).hash(hasher);
+        rays.as_ref().map(|rays| rays.numbers().map(bits)).hash(hasher);
     }
 
     /// Returns a key that is equal if both are drawn with the same bits. Maps are compared by
     /// identity: comparing pixels would cost more than drawing.
     pub(crate) fn identity(&self) -> impl PartialEq + use<> {
-        let Self { emission, ambient, specular, exponent, bump } = self;
+        let Self { emission, ambient, specular, exponent, bump, rays } = self;
+        let rays = rays.as_ref().map(|it| (it.numbers().map(f64::to_bits), address(&it.map)));
         let glow = |glow: &Option<Glow>| {
             glow.as_ref().map(|glow| (glow.color.map(f64::to_bits), address(&glow.map)))
         };
         let bump = bump.as_ref();
         let bump = bump.map(|it| (Shared::address(&it.map), it.gain.map(f64::to_bits)));
-        (glow(emission), glow(ambient), address(specular), address(exponent), bump)
+        (glow(emission), glow(ambient), address(specular), address(exponent), bump, rays)
     }
 }
 

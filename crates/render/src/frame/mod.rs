@@ -70,6 +70,9 @@ pub struct FramePlan {
     pub(crate) draws: Vec<Draw>,
     /// The distinct pipelines of all draws.
     pub(crate) pipelines: Vec<Pipeline>,
+    /// What rays can meet, if any surface mirrors or refracts: all objects, whether the picture
+    /// shows them or not, with light at pixels.
+    pub(crate) surroundings: Option<Box<FramePlan>>,
     /// Whether rules leave out what no pixel shows.
     pub(crate) rules: Rules,
 }
@@ -136,6 +139,15 @@ impl FramePlan {
     /// pictures are drawn larger and averaged.
     pub(crate) fn is_supersampled(&self) -> bool {
         self.lit_by_sample && self.samples == Samples::TwoFiftySix
+    }
+
+    /// Returns whether any surface mirrors or refracts.
+    pub(crate) fn casts_rays(&self) -> bool {
+        let casts = |pipeline: &Pipeline| match pipeline {
+            Pipeline::Shaded(shaded) => shaded.extras.rays.is_some(),
+            Pipeline::Flat(_) => false,
+        };
+        self.pipelines.iter().any(casts)
     }
 
     /// Returns whether any surface is transparent.

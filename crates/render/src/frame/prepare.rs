@@ -2,7 +2,7 @@
 
 use super::FramePlan;
 use super::draw::{Draw, Lines, Pipeline, Shaded};
-use crate::accel::{Accelerated as _, DrawOrder, EdgeOrder};
+use crate::accel::{Accelerated as _, Bvh, DrawOrder, EdgeOrder};
 use marraztu_core::accuracy::{LightAt, Tangents};
 use marraztu_core::scene::{Derived, Normals};
 
@@ -12,6 +12,12 @@ impl FramePlan {
     pub(crate) fn prepare(&self) {
         self.draws.iter().for_each(|draw| prepare(draw, self));
         self.shadows.prepare(self.variants.shadow_method);
+        if let Some(around) = &self.surroundings {
+            around.prepare();
+            for draw in &around.draws {
+                let _tree: &Bvh = draw.model.mesh.bvh();
+            }
+        }
     }
 }
 

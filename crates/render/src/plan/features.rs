@@ -10,9 +10,10 @@ use super::rules::Reading;
 use super::uses::{Effect, EffectState, EffectUse, Thing};
 use crate::frame::FramePlan;
 use crate::frame::draw::{Back, Draw, Pipeline, Shaded, Stage};
+use crate::frame::extras::SurfaceRays;
 use crate::lights::Form;
-use marraztu_core::accuracy::{Filter, LightAt, Settings, Tangents, Transparency};
-use marraztu_core::scene::{ItemId, MapKind, Normals, Object, Sides, Surface};
+use marraztu_core::accuracy::{Bounces, Filter, LightAt, Settings, Tangents, Transparency};
+use marraztu_core::scene::{ItemId, MapKind, Normals, Object, Optics, Reflection, Sides, Surface};
 
 /// The inputs of a row.
 struct Facts<'a> {
@@ -49,6 +50,8 @@ const FEATURES: &[Feature] = &[
     Feature(Effect::Emission, emission, Some(|shaded| shaded.extras.emission.is_some())),
     Feature(Effect::Maps, maps, Some(|shaded| shaded.extras.has_maps())),
     Feature(Effect::Bumps, bumps, Some(|shaded| shaded.extras.bump.is_some())),
+    Feature(Effect::Mirrors, mirrors, Some(reflects)),
+    Feature(Effect::Refraction, refraction, Some(transmits)),
     Feature(Effect::BackFaces, back_faces, None),
     Feature(Effect::Edges, |it| switched(it.draw.lines.edges), None),
     Feature(Effect::FaceNormals, |it| switched(it.draw.lines.face_normals.is_some()), None),
@@ -111,27 +114,36 @@ impl FramePlan {
             Effect::Shadows(id) => {
                 let index = self.light_ids.iter().position(|light| *light == id)?;
                 *plan.shadows.sources.get_mut(index)? = None;
+                if let Some(around) = &mut plan.surroundings {
+                    *around.shadows.sources.get_mut(index)? = None;
+                }
             }
             Effect::Highlights => plan.for_each_light(|stages| {
                 stages.iter_mut().for_each(|stage| stage.highlight = Form::Plain);
             }),
-            Effect::Texture => plan.for_each_shaded(|shaded| {
+            Effect::Texture => plan.for_each_shaded(&|shaded: &mut Shaded| {
                 shaded.texture = None;
                 // An opacity map can cut holes without the texture.
                 if shaded.opacity_map.is_none() {
                     shaded.cutout = None;
                 }
             }),
-            Effect::AlphaTest => plan.for_each_shaded(|shaded| {
+            Effect::AlphaTest => plan.for_each_shaded(&|shaded: &mut Shaded| {
                 // A transparent surface keeps its opacity map.
                 if shaded.cutout.is_some() {
                     (shaded.cutout, shaded.opacity_map) = (None, None);
                 }
             }),
-            Effect::Transparency => plan.for_each_shaded(|shaded| shaded.opacity = None),
-            Effect::VertexColors => plan.for_each_shaded(|shaded| shaded.vertex_colors = false),
-            Effect::Emission => plan.for_each_shaded(|shaded| shaded.extras.emission = None),
-            Effect::Maps => plan.for_each_shaded(|shaded| {
+            Effect::Transparency => {
+                plan.for_each_shaded(&|shaded: &mut Shaded| shaded.opacity = None)
+            }
+            Effect::VertexColors => {
+                plan.for_each_shaded(&|shaded: &mut Shaded| shaded.vertex_colors = false)
+            }
+            Effect::Emission => {
+                plan.for_each_shaded(&|shaded: &mut Shaded| shaded.extras.emission = None)
+            }
+            Effect::Maps => plan.for_each_shaded(&|shaded: &mut Shaded| {
                 // The ambient glow stays, because its lights are not among the stages.
                 shaded.extras.ambient.iter_mut().for_each(|ambient| ambient.map = None);
                 (shaded.extras.specular, shaded.extras.exponent) = (None, None);
@@ -139,7 +151,11 @@ impl FramePlan {
                     stage.is_mapped = false;
                 }
             }),
-            Effect::Bumps => plan.for_each_shaded(|shaded| shaded.extras.bump = None),
+            Effect::Bumps => plan.for_each_shaded(&|shaded: &mut Shaded| shaded.extras.bump = None),
+            Effect::Mirrors => {
+                plan.for_each_rays(|rays| rays.reflection = Reflection::None);
+            }
+            Effect::Refraction => plan.for_each_rays(|rays| rays.transmission = [0.0; 3]),
             // Exposure is a factor of the lights and costs nothing.
             Effect::Exposure => return None,
             Effect::LinearLight => plan.variants = plan.variants.in_stored_values(),
@@ -160,21 +176,36 @@ impl FramePlan {
         (plan != *self).then_some(plan)
     }
 
-    fn for_each_shaded(&mut self, change: impl Fn(&mut Shaded)) {
+    fn for_each_shaded(&mut self, change: &dyn Fn(&mut Shaded)) {
         for pipeline in &mut self.pipelines {
             if let Pipeline::Shaded(shaded) = pipeline {
                 change(shaded);
             }
         }
+        if let Some(around) = &mut self.surroundings {
+            around.for_each_shaded(change);
+        }
+    }
+
+    fn for_each_rays(&mut self, change: impl Fn(&mut SurfaceRays)) {
+        self.for_each_shaded(&|shaded: &mut Shaded| {
+            let rays = &mut shaded.extras.rays;
+            rays.iter_mut().for_each(&change);
+            *rays = rays.take().filter(|rays| rays.reflects() || rays.transmits());
+        });
+        if !self.casts_rays() {
+            self.surroundings = None;
+        }
     }
 
     fn for_each_light(&mut self, change: impl Fn(&mut Vec<Stage>)) {
         let rules = self.rules;
-        self.for_each_shaded(|shaded| {
+        self.for_each_shaded(&|shaded: &mut Shaded| {
             if let Some(stages) = &mut shaded.light {
                 change(stages);
                 // Perhaps none of the remaining lights reads positions.
-                shaded.needs_positions = rules.positions(&Reading::of(stages.iter())).is_none();
+                shaded.needs_positions = shaded.extras.rays.is_some()
+                    || rules.positions(&Reading::of(stages.iter())).is_none();
             }
         });
     }
@@ -321,6 +352,56 @@ fn bumps(it: &Facts<'_>) -> EffectState {
     });
     // `normals` holds for both kinds of map, so heights are preferred.
     heights.or(normals).unwrap_or(EffectState::left_out(left_out))
+}
+
+/// Returns whether a surface mirrors.
+fn reflects(shaded: &Shaded) -> bool {
+    shaded.extras.rays.as_ref().is_some_and(SurfaceRays::reflects)
+}
+
+/// Returns whether light passes through a surface.
+fn transmits(shaded: &Shaded) -> bool {
+    shaded.extras.rays.as_ref().is_some_and(SurfaceRays::transmits)
+}
+
+fn mirrors(it: &Facts<'_>) -> EffectState {
+    let is_even = |shaded: &Shaded| {
+        let rays = shaded.extras.rays.as_ref();
+        rays.is_some_and(|rays| rays.reflection == Reflection::Constant)
+    };
+    let bounces = it.settings.bounces.count();
+    let how = |what: &str| format!("{what}, {bounces} bounces");
+    let even = any(it, is_even, how("Ks"));
+    let asks = |optics: &Optics| optics.reflection != Reflection::None;
+    even.or_else(|| any(it, reflects, how("Ks, more at grazing angles")))
+        .unwrap_or_else(|| EffectState::left_out(without_rays(it, asks, "no material mirrors")))
+}
+
+fn refraction(it: &Facts<'_>) -> EffectState {
+    let bends = |shaded: &Shaded| {
+        let rays = shaded.extras.rays.as_ref();
+        rays.is_some_and(|it| it.transmits() && it.is_closed && it.index != 1.0)
+    };
+    let bent = any(it, bends, "Tf, bent by Ni");
+    bent.or_else(|| any(it, transmits, "Tf, unbent")).unwrap_or_else(|| {
+        EffectState::left_out(without_rays(it, Optics::transmits, "no material lets light through"))
+    })
+}
+
+/// Returns the reason why an object casts no rays of a kind.
+fn without_rays(
+    it: &Facts<'_>,
+    asks: fn(&Optics) -> bool,
+    otherwise: &'static str,
+) -> &'static str {
+    let parts = u32::try_from(it.object.model.mesh.parts().len()).unwrap_or(u32::MAX);
+    let is_asked = (0..parts).any(|part| asks(&it.object.part_look(part).material.optics));
+    match it.unfilled() {
+        Some(reason) => reason,
+        None if !is_asked => otherwise,
+        None if it.settings.bounces == Bounces::None => "0 bounces",
+        None => "Ks is 0, or it is not lit",
+    }
 }
 
 fn vertex_colors(it: &Facts<'_>) -> EffectState {

@@ -8,7 +8,9 @@ use crate::lights::{Form, PhongMaterial};
 use marraztu_core::accuracy::LightAt;
 use marraztu_core::base::Shared;
 use marraztu_core::base::color::linear;
-use marraztu_core::scene::{MapKind, Material, PartLook, SurfaceMap, Texture};
+use marraztu_core::scene::{
+    MapKind, Material, Optics, PartLook, SurfaceMap, Texture, Transmission,
+};
 
 /// Returns a map of a part, if its mesh has texture coordinates.
 pub(super) fn mapped<'a>(
@@ -21,10 +23,15 @@ pub(super) fn mapped<'a>(
 
 /// Returns a material with colours decoded from sRGB.
 pub(super) fn decoded(material: &Material) -> Material {
-    let Material { ambient, diffuse, specular, exponent, emission } = *material;
+    let Material { ambient, diffuse, specular, exponent, emission, optics } = *material;
     let [ambient, diffuse, specular, emission] =
         [ambient, diffuse, specular, emission].map(|color| color.map(linear));
-    Material { ambient, diffuse, specular, exponent, emission }
+    let transmission = match optics.transmission {
+        Transmission::Filter(filter) => Transmission::Filter(filter.map(linear)),
+        other => other,
+    };
+    let optics = Optics { transmission, ..optics };
+    Material { ambient, diffuse, specular, exponent, emission, optics }
 }
 
 /// Returns whether an opacity map is the texture itself with the same layout: its alpha counts

@@ -14,6 +14,7 @@ mod observer;
 mod planner;
 mod planning;
 mod range;
+mod rays;
 mod rules;
 mod shadows;
 mod surfaces;
@@ -121,6 +122,7 @@ fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
         shadows: Shadows::default(),
         draws: Vec::new(),
         pipelines: Vec::new(),
+        surroundings: None,
         rules,
     };
     let mut into = Planning::new(plan, notes);
@@ -133,7 +135,7 @@ fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
     });
     // Lights come first, because shadows and surfaces refer to their numbers.
     let shining = view_lights(&mut into, scene, view, &observer);
-    let planner = Planner { shot, observer, shining };
+    let planner = Planner { shot, observer, shining, is_around: false };
     planner.add_shadows(&mut into);
     planner.add_objects(&mut into);
     if view.marks {
@@ -142,6 +144,7 @@ fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
         let off = EffectState::left_out("switched off");
         into.notes.add(|| EffectUse::new(Effect::Marks, None, off));
     }
+    planner.add_surroundings(&mut into);
     into
 }
 

@@ -48,6 +48,7 @@ impl Planner<'_> {
     fn culls_spheres(&self, into: &Planning) -> bool {
         let view = &self.shot.view;
         into.plan.rules == Rules::Applied
+            && !self.is_around
             && !into.notes.are_wanted()
             && !into.plan.raster_mode().moves_geometry()
             && !view.face_normals
@@ -90,8 +91,12 @@ impl Planner<'_> {
                 NormalSource::Computed
             },
             polygons: self.polygons_of(id),
-            lines: self.lines(&object.model, object.edge_color),
-            strokes: self.strokes(id, object),
+            // Rays meet surfaces alone.
+            lines: match self.is_around {
+                true => Lines::NONE,
+                false => self.lines(&object.model, object.edge_color),
+            },
+            strokes: self.strokes(id, object).filter(|_| !self.is_around),
             ..self.draw(
                 ItemId::Object(id),
                 &object.model,
@@ -163,6 +168,7 @@ impl Planner<'_> {
         if draw.back == Back::Lit
             && !draw.culls_opaque
             && !moves
+            && !self.is_around
             && shows_fronts_only(&draw, self.shot.view.projection)
         {
             draw.back = Back::Culled;
@@ -174,8 +180,8 @@ impl Planner<'_> {
             Some(if mesh.has_shapes() { "nothing of it is shown" } else { "it has no faces" })
         } else if !math::has_full_rank(DMat3::from_mat4(draw.view_from_object)) {
             Some("its placement is flat: it has no inside and no outside")
-        } else if moves {
-            // A variant may move it on the screen.
+        } else if moves || self.is_around {
+            // A variant may move it on the screen, and rays go everywhere.
             None
         } else {
             rules.thing(&thing)
@@ -187,7 +193,10 @@ impl Planner<'_> {
         if draw.part_pipelines.is_empty() {
             let seen = rules.surfaces(&thing).is_none();
             let (region, tiled) = self.region(&draw, bounds.corners());
-            let turning = turning_of(&draw, self.shot.settings.light);
+            let turning = match self.is_around {
+                true => None,
+                false => turning_of(&draw, self.shot.settings.light),
+            };
             let ground = Ground { item, object, region, turning, tiled, seen };
             draw.part_pipelines = self.part_pipelines(into, &ground);
         }
@@ -209,6 +218,9 @@ impl Planner<'_> {
     /// Returns the region of an object's lit points, if it is known, and whether nothing of it is
     /// clipped.
     fn region(&self, draw: &Draw, corners: [DVec3; 8]) -> (Option<Region>, bool) {
+        if self.is_around {
+            return (None, false);
+        }
         if self.shot.settings.light != LightAt::Pixel {
             // Lit at vertices or faces: clipping does not matter.
             let exact = Region::placed(draw.view_from_object, corners, 0.0);

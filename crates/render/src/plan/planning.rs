@@ -46,6 +46,8 @@ pub(super) struct Planner<'a> {
     pub(super) shot: &'a Shot,
     pub(super) observer: ObserverSpace,
     pub(super) shining: Vec<Shining>,
+    /// Whether this plans what rays can meet, and not what the observer sees.
+    pub(super) is_around: bool,
 }
 
 /// A light that is evaluated in this frame.

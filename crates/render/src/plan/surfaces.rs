@@ -39,13 +39,14 @@ impl Planner<'_> {
         let mut look = object.part_look(part);
         let textured = !object.model.mesh.uvs().is_empty();
         let settings = &self.shot.settings;
-        let cover = Cover::of(&look, textured, settings.transparency);
-        if cover == Cover::Nothing {
-            return None;
-        }
         let linear = into.plan.variants.are_linear();
         if linear {
             look.material = decoded(&look.material);
+        }
+        self.settle_transmission(ground, &mut look);
+        let cover = Cover::of(&look, textured, settings.transparency);
+        if cover == Cover::Nothing {
+            return None;
         }
         // Only lines are drawn, so the colour does not matter.
         if !ground.seen {
@@ -72,7 +73,7 @@ impl Planner<'_> {
         if linear {
             tint = tint.map(color::linear);
         }
-        let lit = self.lit(into, ground, &look, texture);
+        let lit = self.lit(into, ground, (part, &look), texture);
         // Unlit materials show Kd as their colour.
         if look.unlit && object.surface != Surface::Texture {
             tint = std::array::from_fn(|i| tint[i] * lit.material.diffuse[i]);
@@ -107,7 +108,7 @@ impl Planner<'_> {
         &self,
         into: &mut Planning,
         ground: &Ground<'_>,
-        look: &PartLook<'_>,
+        (part, look): (u32, &PartLook<'_>),
         texture: Option<&Shared<Texture>>,
     ) -> Shaded {
         let material = coefficients(look);
@@ -129,7 +130,10 @@ impl Planner<'_> {
             mapped_ambient(into, ground, (look, texture), &material, &mut stages);
         shaded.material = material;
         self.map_highlights(ground, look, &mut shaded.extras, &mut stages);
-        shaded.needs_positions = into.plan.rules.positions(&Reading::of(stages.iter())).is_none();
+        shaded.extras.rays = self.rays(ground, (part, look), &material);
+        // Rays start along the normals of pixels.
+        shaded.needs_positions = shaded.extras.rays.is_some()
+            || into.plan.rules.positions(&Reading::of(stages.iter())).is_none();
         // Only lights that read normals show bumps.
         shaded.extras.bump = bump.filter(|_| shaded.needs_positions);
         // Light is culled tile by tile if some light has a limited reach.

@@ -35,6 +35,10 @@ pub enum Effect {
     Maps,
     /// Maps of heights or normals.
     Bumps,
+    /// Surfaces that mirror their surroundings.
+    Mirrors,
+    /// Surfaces that light passes through, bent or unbent.
+    Refraction,
     /// Light in linear sRGB.
     LinearLight,
     /// Exposure: a common factor of all light.
@@ -70,6 +74,8 @@ impl Effect {
             Self::Emission => "Emission",
             Self::Maps => "Ka, Ks, Ns maps",
             Self::Bumps => "Bumps",
+            Self::Mirrors => "Mirrors",
+            Self::Refraction => "Refraction",
             Self::LinearLight => "Linear light",
             Self::Exposure => "Exposure",
             Self::BackFaces => "Back faces",

@@ -18,7 +18,7 @@ use crate::raster::visibility_buffer::Visible;
 use crate::raster::{depth_format, entries, visibility_buffer};
 use crate::screen::sample_positions::passes;
 use crate::screen::tiles::{BLOCK_PIXELS, TILE, block_at, tiles_of};
-use crate::shading::context::ShadingContext;
+use crate::shading::context::{Around, OffScreen, ShadingContext};
 use crate::shading::explain::{Asked, explain};
 use crate::shading::interpolated::ShadingNumber;
 use crate::shading::light::Lit;
@@ -126,7 +126,16 @@ impl Renderer {
         let mut paths = ColorPaths::default();
         choose(plan, &mut paths);
         let (lit, terms, paths) = (&lit, &terms, &paths);
-        let context = ShadingContext { level, plan, frame, lit, terms, faces: None, paths, tracer };
+        let off_screen = OffScreen::default();
+        let mut around_terms = LightTerms::<T>::default();
+        let around_plan = plan.surroundings.as_deref();
+        around_plan.into_iter().for_each(|around| around_terms.prepare(around));
+        let around_tracer = around_plan.and_then(|around| Tracer::new(around, &self.maps));
+        let inputs = (lit, &around_terms, around_tracer.as_ref());
+        let around = Around::new(level, plan, inputs, &off_screen);
+        let around = around.as_ref();
+        let context =
+            ShadingContext { level, plan, frame, lit, terms, faces: None, paths, tracer, around };
         let [x, y] = at;
         let [columns, _] = tiles_of(plan.size);
         let tile = usize::try_from(y / TILE * columns + x / TILE).expect("not negative");

@@ -42,7 +42,17 @@ impl Weights {
         vertices: &[ScreenVertex],
         number: u32,
     ) -> Self {
-        Self::by(Interpolation::Perspective, (plan, draw, vertices), number, [0; 2])
+        Self::of_samples(plan, draw, vertices, (number, [0; 2]))
+    }
+
+    /// The same, `shift` subpixels from pixel centres.
+    pub(crate) fn of_samples(
+        plan: &FramePlan,
+        draw: &Draw,
+        vertices: &[ScreenVertex],
+        (number, shift): (u32, [i32; 2]),
+    ) -> Self {
+        Self::by(Interpolation::Perspective, (plan, draw, vertices), number, shift)
     }
 
     fn by(

@@ -1,6 +1,8 @@
 //! The inputs of shading, and groups of fragments that are coloured together because they share a
 //! draw and a pipeline.
 
+use std::collections::BTreeMap;
+
 use fearless_simd::Level;
 
 use super::face_colors::FaceColors;
@@ -11,6 +13,7 @@ use crate::frame::FramePlan;
 use crate::frame::color_path::{ColorPath, ColorPaths};
 use crate::frame::draw::{Draw, Pipeline, Shaded, Stage};
 use crate::raster::geometry::ScreenGeometry;
+use crate::rays::surroundings::Surroundings;
 use crate::shadow::tracer::Tracer;
 
 /// The parts of a frame that shading reads.
@@ -27,6 +30,47 @@ pub(crate) struct ShadingContext<'a, T> {
     pub(crate) paths: &'a ColorPaths,
     /// The tracer, if any light casts shadows.
     pub(crate) tracer: Option<&'a Tracer<'a>>,
+    /// What rays can meet, if any surface mirrors or refracts.
+    pub(crate) around: Option<&'a Around<'a, T>>,
+}
+
+/// What the rays of a frame can meet, and the inputs for shading it.
+#[derive(Debug)]
+pub(crate) struct Around<'a, T> {
+    pub(crate) surroundings: Surroundings<'a>,
+    pub(crate) context: ShadingContext<'a, T>,
+    /// The index of each draw of the picture among those of the surroundings.
+    pub(crate) of_draws: Vec<Option<u32>>,
+}
+
+/// Inputs of shading that only pixels read: points that rays meet have no place on the screen.
+#[derive(Debug, Default)]
+pub(crate) struct OffScreen {
+    frame: ScreenGeometry,
+    paths: ColorPaths,
+}
+
+impl<'a, T> Around<'a, T> {
+    /// Prepares the surroundings of a picture for rays, if it casts any.
+    pub(crate) fn new(
+        level: Level,
+        picture: &'a FramePlan,
+        (lit, terms, tracer): (&'a Lit<T>, &'a LightTerms<T>, Option<&'a Tracer<'a>>),
+        OffScreen { frame, paths }: &'a OffScreen,
+    ) -> Option<Self> {
+        let plan = picture.surroundings.as_deref()?;
+        let items = plan.draws.iter().map(|draw| draw.item);
+        let of_items: BTreeMap<_, _> = items.zip(0_u32..).collect();
+        let own = |draw: &Draw| of_items.get(&draw.item).copied();
+        let (faces, around) = (None, None);
+        let context =
+            ShadingContext { level, plan, frame, lit, terms, faces, paths, tracer, around };
+        Some(Self {
+            surroundings: Surroundings::new(plan),
+            context,
+            of_draws: picture.draws.iter().map(own).collect(),
+        })
+    }
 }
 
 impl<'a, T> ShadingContext<'a, T> {

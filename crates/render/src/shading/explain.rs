@@ -155,6 +155,7 @@ impl<T: ShadingNumber> Point<'_, T> {
         let of_all = [first(&self.shader.batch.diffuse), first(&self.shader.batch.specular)];
         let texel = first(&self.shader.texels);
         let glow = first(&self.shader.maps.glow);
+        let seen = first(&self.shader.maps.seen);
         let drawn = self.shader.batch.clone();
         let opacity = f64::from(self.shader.opacities(&self.group)[0]);
         let mut surface = self.place();
@@ -177,8 +178,16 @@ impl<T: ShadingNumber> Point<'_, T> {
                 self.of_lights(&mut surface, (shaded, stages), &drawn)
             }
         };
-        if shaded.extras.glows().next().is_some() {
-            terms.push(Term::new(Part::Emission, glow));
+        let glows = shaded.extras.glows().next().is_some();
+        let sees = shaded.extras.rays.is_some();
+        if glows {
+            let own = if sees { [0, 1, 2].map(|i| glow[i] - seen[i]) } else { glow };
+            terms.push(Term::new(Part::Emission, own));
+        }
+        if sees {
+            terms.push(Term::new(Part::Surroundings, seen));
+        }
+        if glows || sees {
             color = plus(color, glow);
         }
         let sum = terms.iter().fold([0.0; 3], |sum, term| plus(sum, term.value));

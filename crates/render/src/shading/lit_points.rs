@@ -31,8 +31,6 @@ pub(crate) fn place_fragments<T: ShadingNumber>(
     let vertices = frame.corners_of(group.draw_index);
     // Only weights with perspective are weights of positions.
     let has_perspective = plan.variants.interpolation == Interpolation::Perspective;
-    let is_smooth = plan.variants.terminator == Terminator::Smooth;
-    let smooth = is_smooth && group.draw.normals == Normals::Vertex;
     let (mut last, mut known) = (usize::MAX, None);
     for i in 0..fragments.len {
         let slot = fragments.slots[i].cast_unsigned() as usize;
@@ -40,27 +38,70 @@ pub(crate) fn place_fragments<T: ShadingNumber>(
         // Corners, normals and weights are only computed when the triangle changes.
         if slot != last {
             last = slot;
-            let corners = tracer.corners_of(caster, number);
-            // Points may be rounded off their planes by a multiple of the largest coordinate.
-            let reach = corners.iter().fold(0.0, |most: f64, c| most.max(c.abs().max_element()));
-            origins.reach = origins.reach.max(reach);
-            let normals = smooth.then(|| {
-                let turn = if attributes.back >> slot & 1 == 1 { -1.0 } else { 1.0 };
-                each(normals_of(group.draw, tracer, caster, number), |normal| normal * turn)
-            });
+            let is_back = attributes.back >> slot & 1 == 1;
+            let triangle = LitTriangle::new(group, (tracer, caster), (number, is_back), origins);
             let weights = Weights::of_positions(plan, group.draw, vertices, number);
-            known = Some((corners, normals, weights));
+            known = Some((triangle, weights));
         }
-        let Some((corners, normals, weights)) = &known else { continue };
+        let Some((triangle, weights)) = &known else { continue };
         let at_centre = weights.at([fragments.x[i], fragments.y[i]]);
         // Lit at the centre of the pixel, unless the centre is outside of the triangle.
         let is_inside = at_centre.min_element() >= 0.0;
         let is_shared = fragments.shared && has_perspective;
         let weights = if is_inside || !is_shared { at_centre } else { barycentrics.weights(i) };
+        triangle.place(i, weights, origins);
+    }
+}
+
+/// Sets the points at which surfaces are lit that rays meet, from the triangle of each and its
+/// weights. Those in the mask `back` show their backs.
+pub(super) fn place_points<T: ShadingNumber>(
+    group: &Group<'_, T>,
+    of: (&Tracer<'_>, u32),
+    (points, back): (impl Iterator<Item = (u32, DVec3)>, u64),
+    origins: &mut Origins,
+) {
+    origins.begin(Some(of.1), true);
+    for (i, (number, weights)) in points.enumerate() {
+        let is_back = back >> i & 1 == 1;
+        LitTriangle::new(group, of, (number, is_back), origins).place(i, weights, origins);
+    }
+}
+
+/// A triangle with lit points, in world space.
+struct LitTriangle {
+    number: u32,
+    corners: Corners,
+    /// The normals at the corners, if points are lifted to the smooth surface.
+    normals: Option<[DVec3; 3]>,
+}
+
+impl LitTriangle {
+    fn new<T: ShadingNumber>(
+        group: &Group<'_, T>,
+        (tracer, caster): (&Tracer<'_>, u32),
+        (number, is_back): (u32, bool),
+        origins: &mut Origins,
+    ) -> Self {
+        let corners = tracer.corners_of(caster, number);
+        // Points may be rounded off their planes by a multiple of the largest coordinate.
+        let reach = corners.iter().fold(0.0, |most: f64, c| most.max(c.abs().max_element()));
+        origins.reach = origins.reach.max(reach);
+        let is_smooth = group.context.plan.variants.terminator == Terminator::Smooth;
+        let normals = (is_smooth && group.draw.normals == Normals::Vertex).then(|| {
+            let turn = if is_back { -1.0 } else { 1.0 };
+            each(normals_of(group.draw, tracer, caster, number), |normal| normal * turn)
+        });
+        Self { number, corners, normals }
+    }
+
+    /// Sets a point by its weights.
+    fn place(&self, i: usize, weights: DVec3, origins: &mut Origins) {
+        let Self { number, corners, normals } = self;
         // The point is moved off the edges, and its own triangle never shades it.
         let [y, z] = shares(weights);
         let at = within(corners, [y, z]);
-        origins.set(i, at, [number, number + 1]);
+        origins.set(i, at, [*number, number + 1]);
         if let Some(normals) = normals {
             let lift = lift(corners, normals, [1.0 - y - z, y, z], at);
             if lift != DVec3::ZERO {
@@ -99,7 +140,7 @@ const INSIDE: f64 = 1e-6;
 
 /// Returns the weights of the second and third corner, clamped together with the first. NaN is
 /// clamped, too.
-fn shares(weights: DVec3) -> [f64; 2] {
+pub(super) fn shares(weights: DVec3) -> [f64; 2] {
     let [x, y, z] = each(weights.to_array(), |weight| weight.max(INSIDE));
     let sum = x + y + z;
     // Infinite weights give no point, so the centroid is lit.
@@ -107,7 +148,7 @@ fn shares(weights: DVec3) -> [f64; 2] {
 }
 
 /// Returns the point of a triangle with these weights of its second and third corner.
-fn within([a, b, c]: &Corners, [y, z]: [f64; 2]) -> DVec3 {
+pub(super) fn within([a, b, c]: &Corners, [y, z]: [f64; 2]) -> DVec3 {
     *a + (*b - *a) * y + (*c - *a) * z
 }
 

@@ -14,6 +14,10 @@ use crate::simd::{BATCH, Number};
 pub(crate) struct MapRows<T> {
     /// The light added to the colour of each pixel.
     pub(super) glow: Rows<T>,
+    /// What the surface shows of its surroundings, which is part of the glow.
+    pub(super) seen: Rows<T>,
+    /// The normals without bumps, if the surface sends out rays.
+    pub(super) unbent: Rows<T>,
     /// The texels of the current map.
     pub(super) texels: Rows<T>,
     /// The placement of each map.
@@ -30,10 +34,12 @@ pub(super) enum Map {
     Specular,
     Exponent,
     Bump,
+    /// The map of Ks, for mirrors.
+    Mirror,
 }
 
 impl Map {
-    const COUNT: usize = 5;
+    const COUNT: usize = 6;
 }
 
 impl<T: ShadingNumber> Default for MapRows<T> {
@@ -41,6 +47,8 @@ impl<T: ShadingNumber> Default for MapRows<T> {
         let rows = [[T::default(); BATCH]; 3];
         Self {
             glow: rows,
+            seen: rows,
+            unbent: rows,
             texels: rows,
             placements: Default::default(),
             tangents: TangentRows::default(),

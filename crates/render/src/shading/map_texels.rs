@@ -202,7 +202,12 @@ pub(super) fn place<T: ShadingNumber>(
     }
     let reads_mips = sampler.filter.reads_mips();
     let uvs = (&rows, reads_mips);
-    let done = T::place_texture(level, attributes, (texture, uvs), placement);
+    // The footprints of rays differ from triangle to triangle.
+    let of_rays = !attributes.footprints.is_empty();
+    let done = match of_rays {
+        true => 0,
+        false => T::place_texture(level, attributes, (texture, uvs), placement),
+    };
     // Triangles that sixteen lanes could not place exactly.
     let others = placement.known & !done;
     // Dispatched so rounding down uses the processor's instruction, if it has one.
@@ -211,6 +216,10 @@ pub(super) fn place<T: ShadingNumber>(
         let texels = texels(uvs, texture);
         // A triangle with too many texels for f32 gets its positions in f64, pixel by pixel.
         if !fits_f32(&texels) {
+            if of_rays {
+                placement.known &= !(1 << slot);
+                continue;
+            }
             let Some(own) = FarTexture::new(slot, uvs, texture, || {
                 let number = attributes.numbers[slot];
                 ClippedWeights::new(plan, group.draw, number, [0; 2])

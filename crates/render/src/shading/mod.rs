@@ -12,7 +12,9 @@
 //! triangles of about a pixel are coloured without looking triangles up (`tiny`). Blocks that one
 //! triangle covers fully (`blocks`) take all of these steps in one pass without a list
 //! (`full_blocks`). Blocks that transparent triangles reach are coloured layer by layer (`layers`),
-//! each with its opacity, and combined by alpha blending (`blend`). With light per face,
+//! each with its opacity, and combined by alpha blending (`blend`). Surfaces that mirror or refract
+//! send out rays (`bounces`, by the formulas of `optics`), and the points that these meet are shaded
+//! by the same stages (`hits`). With light per face,
 //! `new_faces` lights a tile's triangles once, into a table (`face_colors`).
 //!
 //! f32 and f64 share all of this (`interpolated`) except the paths without lists, which f32 alone
@@ -21,6 +23,7 @@
 pub(crate) mod barycentrics;
 mod blend;
 mod blocks;
+pub(crate) mod bounces;
 mod bumps;
 mod clamp_to_triangle;
 pub(crate) mod colors;
@@ -29,6 +32,7 @@ pub(crate) mod explain;
 pub(crate) mod face_colors;
 pub(crate) mod fragments;
 mod full_blocks;
+mod hits;
 mod interpolate;
 pub(crate) mod interpolated;
 mod layers;
@@ -38,6 +42,7 @@ mod lit_points;
 mod map_rows;
 mod map_texels;
 mod new_faces;
+mod optics;
 pub(crate) mod painter;
 pub(crate) mod path_number;
 pub(crate) mod pixel_color;

@@ -108,6 +108,8 @@ pub enum Part {
     /// Light that the surface adds independently of the lights: emission, and ambient light with a
     /// separate map.
     Emission,
+    /// What the surface mirrors, and what is seen through it by refraction.
+    Surroundings,
     /// The light above 1 that is clipped before layers are blended.
     Cut,
     /// The difference between the selected blending method and exact blending.
@@ -131,6 +133,7 @@ impl Part {
             Self::Diffuse => "diffuse",
             Self::Specular => "specular",
             Self::Emission => "emission",
+            Self::Surroundings => "mirrored and refracted",
             Self::Cut => "clamped to 255",
             Self::Blending => "blending method",
             Self::Enlarged => "mean with neighbours",

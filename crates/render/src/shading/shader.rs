@@ -2,6 +2,7 @@
 
 use super::barycentrics::Barycentrics;
 use super::blend::Blend;
+use super::bounces::Bounces;
 use super::colors::{Colors, Sums};
 use super::fragments::Fragments;
 use super::full_blocks::Canvas;
@@ -41,6 +42,8 @@ pub(crate) struct Shader<T> {
     pub(super) vertex_colors: CornerValues<T>,
     /// The memory for additional maps and emission.
     pub(super) maps: Box<MapRows<T>>,
+    /// The memory for mirrored and refracted rays, allocated when a surface first casts one.
+    pub(crate) bounces: Option<Box<Bounces<T>>>,
     pub(super) colors: Colors,
     pub(super) thresholds: Thresholds<T>,
     /// The triangles of a list with one triangle per pixel.
@@ -97,6 +100,7 @@ impl<T: ShadingNumber> Default for Shader<T> {
             texels: [[T::default(); BATCH]; 3],
             vertex_colors: [[[T::default(); SLOTS]; 3]; 3],
             maps: Box::default(),
+            bounces: None,
             colors: Colors::default(),
             thresholds: Thresholds::default(),
             tiny: TinyTriangles::default(),
@@ -116,6 +120,18 @@ impl<T: ShadingNumber> Shader<T> {
         self.attributes.forget();
         self.look = None;
         self.rays.count = RayCount::default();
+        if let Some(bounces) = &mut self.bounces {
+            bounces.begin();
+        }
         self.path_pixels = PathPixels::default();
+    }
+
+    /// Returns the rays since the frame began.
+    pub(crate) fn ray_count(&self) -> RayCount {
+        let mut count = self.rays.count;
+        if let Some(bounces) = &self.bounces {
+            count += bounces.count();
+        }
+        count
     }
 }

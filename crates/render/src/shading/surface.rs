@@ -9,6 +9,7 @@ use super::bumps::bend;
 use super::colors::Form;
 use super::context::{Group, ShadingContext, group_of, one_group};
 use super::fragments::Fragments;
+use super::hits::no_light;
 use super::interpolate::{Look, Mixed, Points, mix, surface_samples};
 use super::interpolated::ShadingNumber;
 use super::light::{Lighting, Table, run};
@@ -172,16 +173,13 @@ impl<T: ShadingNumber> Shader<T> {
             },
             Some((LightAt::Face, stages)) => self.light_faces(group, stages, each),
         }
-        // Maps come after light, because the map of Ks multiplies highlights.
-        if textured {
-            self.texels(group, shaded);
-        }
-        let glows = extras.glows().next().is_some();
-        if let Some(map) = &extras.specular {
-            self.map_highlights(group, map);
-        }
-        if glows {
-            self.find_glow(group, shaded);
+        let mut glows = self.surface_light(group, shaded);
+        if let Some(rays) = &extras.rays {
+            if !glows {
+                self.maps.glow = no_light();
+            }
+            self.see_surroundings(group, rays);
+            glows = true;
         }
         let lit = light.is_some();
         self.quantize(context, (!textured).then_some(tint), (lit, glows));
@@ -274,6 +272,9 @@ impl<T: ShadingNumber> Shader<T> {
             surface_samples(level, look, points, batch);
             // Bump maps tilt the interpolated normals before any light reads them.
             if let Some(bump) = &shaded.extras.bump {
+                if shaded.extras.rays.is_some() {
+                    maps.unbent = batch.normal;
+                }
                 bend(group, points, bump, (maps, batch));
             }
         } else {

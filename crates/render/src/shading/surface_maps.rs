@@ -63,7 +63,7 @@ impl<T: ShadingNumber> Shader<T> {
     }
 
     /// Reads a map of colours or numbers at the fragments of the list, times `base`.
-    fn read_map(
+    pub(super) fn read_map(
         &mut self,
         group: &Group<'_, T>,
         (map, source): (Map, TexelSource<'_>),
@@ -72,6 +72,24 @@ impl<T: ShadingNumber> Shader<T> {
         let Self { fragments, attributes, barycentrics, maps, .. } = self;
         let points = Points { fragments, attributes, barycentrics };
         maps.read(group, points, (map, source, Texels::Colors), base);
+    }
+
+    /// Computes the colours of the surface at the pixels of the group, if they vary; multiplies
+    /// highlights by their map; and computes the light added to the colours. Returns whether there
+    /// is any.
+    pub(super) fn surface_light(&mut self, group: &Group<'_, T>, shaded: &Shaded) -> bool {
+        // Maps come after light, because the map of Ks multiplies highlights.
+        if shaded.varies() {
+            self.texels(group, shaded);
+        }
+        if let Some(map) = &shaded.extras.specular {
+            self.map_highlights(group, map);
+        }
+        let glows = shaded.extras.glows().next().is_some();
+        if glows {
+            self.find_glow(group, shaded);
+        }
+        glows
     }
 
     /// Computes the light added to the colour of each pixel: Ke times its map, and mapped ambient

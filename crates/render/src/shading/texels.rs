@@ -332,6 +332,9 @@ pub(crate) fn steps<T: AttributeNumber>(
     attributes: &TriangleAttributes<T>,
     slot: usize,
 ) -> Option<Steps> {
+    if let Some(steps) = attributes.footprints.get(slot) {
+        return Some(*steps);
+    }
     if attributes.cut >> slot & 1 == 1 {
         // Clipped triangles have no screen corners, but homogeneous weights are linear as well.
         let number = attributes.numbers[slot];

@@ -20,6 +20,7 @@ use crate::screen::clip::{Screen, ScreenVertex, faces_observer};
 use crate::screen::coverage::{Grid, NARROW_AREA, NARROW_SIDE, Snapped, doubled_area};
 use crate::simd::gather::SLOTS;
 use crate::simd::{Bits, Kernel, Lanes, Number, Vec3};
+use crate::texture::placement::Steps;
 use marraztu_core::base::math::each;
 use marraztu_core::scene::Normals;
 
@@ -65,6 +66,8 @@ pub(crate) struct TriangleAttributes<T> {
     pub(crate) grid: Grid,
     /// The distance between lit samples, in pixels.
     spacing: f64,
+    /// For points that rays meet: the steps of the weights across each ray.
+    pub(crate) footprints: Vec<Steps>,
 }
 
 impl<T: Number> Default for TriangleAttributes<T> {
@@ -90,6 +93,7 @@ impl<T: Number> Default for TriangleAttributes<T> {
             draw: None,
             grid: Grid::Usual,
             spacing: 1.0,
+            footprints: Vec::new(),
         }
     }
 }
@@ -182,6 +186,20 @@ impl<T: AttributeNumber> TriangleAttributes<T> {
             }
         }
         true
+    }
+
+    /// Sets the triangles of a list of points that rays meet. Those in the mask `back` show their
+    /// backs.
+    pub(crate) fn take_alone(
+        &mut self,
+        fragments: &Fragments,
+        order: &DrawOrder,
+        (draw, back): (u32, u64),
+    ) {
+        self.forget();
+        self.take(fragments, Some(order), draw, 0);
+        self.are_new = true;
+        (self.back, self.cut, self.wide) = (back, 0, 0);
     }
 
     /// Finds the back faces, if they matter.

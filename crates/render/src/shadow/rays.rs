@@ -93,19 +93,22 @@ impl Origins {
     }
 }
 
-/// The number of shadow rays in a picture.
+/// The number of rays in a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct RayCount {
-    /// The rays that were traced.
+    /// The shadow rays that were traced.
     pub traced: u64,
-    /// The rays that were blocked.
+    /// The shadow rays that were blocked.
     pub occluded: u64,
+    /// The rays that were mirrored or refracted.
+    pub bounced: u64,
 }
 
 impl std::ops::AddAssign for RayCount {
     fn add_assign(&mut self, other: Self) {
         self.traced += other.traced;
         self.occluded += other.occluded;
+        self.bounced += other.bounced;
     }
 }
 

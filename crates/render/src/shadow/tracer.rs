@@ -159,7 +159,7 @@ impl<'a> Tracer<'a> {
         }
         let shaded = dispatch!(level, simd => self.trace(simd, light, scratch, mask));
         let [traced, occluded] = [mask, shaded].map(|rays| u64::from(rays.count_ones()));
-        scratch.count += RayCount { traced, occluded };
+        scratch.count += RayCount { traced, occluded, bounced: 0 };
         shaded
     }
 
@@ -398,15 +398,15 @@ impl RayScratch {
     #[inline(always)]
     fn visit<S: Simd>(&mut self, simd: S, node: &BvhNode, reached: u64) {
         for (child, [low, high]) in node.children() {
-            if self.shaft.misses(simd, low, high) {
+            if self.shaft.misses(simd, &low, &high) {
                 continue;
             }
             let met = match child.count {
                 0 => reached,
-                _ => self.local.meeting(simd, low, high, reached),
+                _ => self.local.meeting(simd, &low, &high, reached),
             };
             if met != 0 {
-                self.stack.push((*child, met));
+                self.stack.push((child, met));
             }
         }
     }

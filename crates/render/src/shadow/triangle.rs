@@ -32,7 +32,7 @@ pub(super) const OFF_PLANE: f64 = 1.0 / (1_u64 << 46) as f64;
 /// The distance within which triangles lie in one plane, relative to the largest coordinate in
 /// object space: files round coordinates to six decimals, and meshes to f32. Doubled faces and
 /// decals would shade each other in blotches otherwise.
-pub(super) const FLAT: f64 = 1.0 / (1_u64 << 20) as f64;
+pub(crate) const FLAT: f64 = 1.0 / (1_u64 << 20) as f64;
 
 fn place(p: DVec3) -> Coord3D<f64> {
     Coord3D { x: p.x, y: p.y, z: p.z }

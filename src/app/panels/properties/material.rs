@@ -12,7 +12,9 @@ use crate::app::widgets::regions;
 use crate::app::widgets::spheres::{self, Sphere};
 use marraztu_core::base::color::Color;
 use marraztu_core::edit::Gesture;
-use marraztu_core::scene::{Material, MaterialChoice, Object, PresetId};
+use marraztu_core::scene::{
+    Material, MaterialChoice, Object, Optics, PresetId, Reflection, Transmission,
+};
 
 /// The number of spheres per row: 21 spheres, with the file's and the user's own, fill three rows.
 const COLUMNS: u8 = 7;
@@ -134,7 +136,7 @@ fn corner_text(ui: &Ui, rect: Rect, letter: &str) {
     ui.painter().galley_with_override_text_color(at, galley, ui.visuals().text_color());
 }
 
-/// Shows Ka, Kd, Ks and Ns of the user's material.
+/// Shows Ka, Kd, Ks, Ns and the optics of the user's material.
 fn own_ui(ui: &mut Ui, material: Material) -> Option<(Material, Gesture)> {
     let mut changed = None;
     let rows: [(&str, &str, [f64; 3]); 4] = [
@@ -155,6 +157,53 @@ fn own_ui(ui: &mut Ui, material: Material) -> Option<(Material, Gesture)> {
         Number::new("Exponent", "Ns: larger values make the highlight smaller").range(0.0..=1000.0);
     if let Some((exponent, gesture)) = number_row(ui, "Exponent", number, material.exponent) {
         changed = Some((Material { exponent, ..material }, gesture));
+    }
+    let edited = optics_ui(ui, material.optics);
+    changed.or(edited.map(|(optics, gesture)| (Material { optics, ..material }, gesture)))
+}
+
+/// Shows what the user's material mirrors, and what light it lets through.
+fn optics_ui(ui: &mut Ui, optics: Optics) -> Option<(Optics, Gesture)> {
+    let mirrors = [
+        ("None", Reflection::None, "Mirrors nothing"),
+        ("Ks", Reflection::Constant, "Mirrors the fraction Ks in all directions"),
+        ("Fresnel", Reflection::Fresnel, "Mirrors Ks head-on and more at grazing angles"),
+    ];
+    if let Some(reflection) =
+        row(ui, "Mirror", |ui| controls::choose(ui, "Mirror", optics.reflection, &mirrors))
+    {
+        return Some((Optics { reflection, ..optics }, Gesture::Whole));
+    }
+    let filter = match optics.transmission {
+        Transmission::Filter(filter) => filter,
+        Transmission::None | Transmission::Opacity => [1.0; 3],
+    };
+    let ways = [
+        ("None", Transmission::None, "Lets no light through"),
+        ("Opacity", Transmission::Opacity, "Lets through what the opacity leaves"),
+        ("Tf", Transmission::Filter(filter), "Lets through a fraction of each colour"),
+    ];
+    if let Some(transmission) =
+        row(ui, "Refract", |ui| controls::choose(ui, "Refract", optics.transmission, &ways))
+    {
+        return Some((Optics { transmission, ..optics }, Gesture::Whole));
+    }
+    let mut changed = None;
+    if let Transmission::Filter(filter) = optics.transmission {
+        let hint = "Tf: the fraction of a colour that passes through the surface";
+        if let Some((filter, gesture)) = factors_ui(ui, "Filter", hint, filter) {
+            let transmission = Transmission::Filter(filter);
+            changed = Some((Optics { transmission, ..optics }, gesture));
+        }
+    }
+    // The index bends light, and decides how much a surface mirrors head-on.
+    if optics.transmission != Transmission::None || optics.reflection == Reflection::Fresnel {
+        let number = Number::new("Index", "Ni: the index of refraction; 1.33 water, 1.5 glass")
+            .speed(0.005)
+            .range(Optics::INDICES);
+        if let Some((index, gesture)) = number_row(ui, "Index", number, optics.index) {
+            changed = Some((Optics { index, ..optics }, gesture));
+        }
     }
     changed
 }

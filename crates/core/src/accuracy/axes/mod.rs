@@ -37,6 +37,7 @@ macro_rules! choice {
 mod geometry;
 mod light;
 mod picture;
+mod rays;
 mod sampling;
 mod sense;
 mod shadows;
@@ -106,6 +107,7 @@ pub const AXES: &[Axis] = &[
     picture::DEPTH,
     transparency::TRANSPARENCY,
     shadows::SHADOW_METHOD,
+    rays::BOUNCES,
     sampling::SAMPLES,
     sampling::RESOLUTION,
     geometry::INTERPOLATION,
@@ -139,8 +141,11 @@ impl Axis {
     /// One of its choices in a sentence: "nearest texture filter", "depth in 16 bits".
     pub fn in_words(&self, choice: &Choice) -> String {
         let phrase = self.phrase.replace("{}", &uncapitalized(choice.label));
-        // The only phrase that counts.
-        if choice.label == "1" { phrase.replace("samples", "sample") } else { phrase }
+        // The only phrases that count.
+        match choice.label {
+            "1" => phrase.replace("samples", "sample").replace("bounces", "bounce"),
+            _ => phrase,
+        }
     }
 
     /// The choice of the default settings.

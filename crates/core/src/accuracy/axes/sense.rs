@@ -56,6 +56,12 @@ pub(super) fn is_mirroring(object: &Object, part: u32) -> bool {
     is_lit(object, part) && object.part_look(part).material.specular.iter().any(|ks| *ks > 0.0)
 }
 
+/// Whether it is lit, and mirrors or refracts.
+pub(super) fn asks_for_rays(object: &Object, part: u32) -> bool {
+    let look = object.part_look(part);
+    is_lit(object, part) && !look.unlit && !look.material.optics.is_none()
+}
+
 /// Checks that a visible object has a property; otherwise returns the given reason.
 pub(super) fn if_any_object(
     scene: &Scene,

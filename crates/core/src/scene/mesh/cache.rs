@@ -239,12 +239,22 @@ impl Mesh {
 
     /// Returns whether the polygons form closed surfaces after these parts are removed.
     pub fn is_closed_without(&self, parts: impl IntoIterator<Item = u32>) -> bool {
-        let all = get_or_compute::<Vec<_>>(&self.shape.found.boundaries, || {
-            boundaries(&self.outlines(), self.polygon_parts(), self.parts().len())
-        });
+        let all = self.boundaries();
         let removed = parts.into_iter().filter_map(|part| all.get(part as usize).copied());
         let sum = all.iter().copied().fold(0, u64::wrapping_add);
         removed.fold(sum, u64::wrapping_sub) == 0
+    }
+
+    /// Returns whether the polygons of a part form closed surfaces by themselves.
+    pub fn is_part_closed(&self, part: u32) -> bool {
+        self.boundaries().get(part as usize) == Some(&0)
+    }
+
+    /// Returns the sum of the boundaries of each part.
+    fn boundaries(&self) -> &[u64] {
+        get_or_compute::<Vec<_>>(&self.shape.found.boundaries, || {
+            boundaries(&self.outlines(), self.polygon_parts(), self.parts().len())
+        })
     }
 
     /// Returns the edges of the mesh: the sides of all polygons, each listed once.

@@ -10,7 +10,7 @@ use crate::export::look::Looks;
 use crate::export::part_look::Look;
 use crate::export::pictures::Pictures;
 use crate::mark::SIGNATURE;
-use marraztu_core::scene::{MapKind, Texture, Wrap};
+use marraztu_core::scene::{MapKind, Texture, Transmission, Wrap};
 
 /// Writes the textures and the MTL file. Their names begin with `stem`.
 pub(super) fn written(stem: &str, looks: &Looks) -> Result<Content, String> {
@@ -104,15 +104,31 @@ fn coefficients(mtl: &mut String, look: &Look) {
         let [r, g, b] = material.emission;
         let _ = writeln!(mtl, "Ke {r} {g} {b}");
     }
+    let optics = &material.optics;
+    if !optics.is_none() {
+        let _ = writeln!(mtl, "Ni {}", optics.index);
+        if let Transmission::Filter([r, g, b]) = optics.transmission {
+            let _ = writeln!(mtl, "Tf {r} {g} {b}");
+        }
+    }
     // Statements that this program does not draw pass through unchanged.
-    for (word, numbers) in look.undrawn.iter().filter(|(word, _)| **word != "illum") {
+    let is_written = |word: &str| match word {
+        "illum" => true,
+        "Ni" | "Tf" | "Kt" => !optics.is_none(),
+        _ => false,
+    };
+    for (word, numbers) in look.undrawn.iter().filter(|(word, _)| !is_written(word)) {
         mtl.push_str(word);
         for number in numbers {
             let _ = write!(mtl, " {number}");
         }
         mtl.push('\n');
     }
-    let illumination = if look.unlit { 0.0 } else { look.undrawn("illum").unwrap_or(2.0) };
+    let illumination = match look.undrawn("illum") {
+        _ if look.unlit => 0.0,
+        Some(given) => given,
+        None => optics.illumination(),
+    };
     let _ = writeln!(mtl, "illum {illumination}");
 }
 

@@ -222,7 +222,7 @@ fn a_tree_holds_every_triangle_once_inside_its_boxes() {
                 let inside = (0..3)
                     .all(|axis| around[0][axis] >= low[axis] && around[1][axis] <= high[axis]);
                 assert!(inside, "a child's box sticks out");
-                open.push((*child, *around));
+                open.push((child, around));
             }
             continue;
         }

@@ -1,0 +1,77 @@
+//! Plans mirrors and refraction: the rays of surfaces, and what the rays can meet.
+
+use super::maps::mapped;
+use super::planning::{Ground, Planner, Planning};
+use super::uses::Notes;
+use crate::frame::FramePlan;
+use crate::frame::extras::SurfaceRays;
+use crate::lights::PhongMaterial;
+use marraztu_core::accuracy::{Bounces, LightAt, Settings};
+use marraztu_core::scene::{MapKind, Optics, PartLook, Reflection, Surface, Transmission};
+
+impl Planner<'_> {
+    /// Rays show what the opacity of a part leaves, if its material says so: the part is then
+    /// opaque, and its own colour is weaker.
+    pub(super) fn settle_transmission(&self, ground: &Ground<'_>, look: &mut PartLook<'_>) {
+        let is_lit = ground.object.surface != Surface::Texture && !look.unlit;
+        let material = &mut look.material;
+        let casts = is_lit && self.shot.settings.bounces != Bounces::None;
+        if casts && material.optics.transmission == Transmission::Opacity {
+            let own = std::mem::replace(&mut look.opacity, 1.0);
+            material.optics.transmission = Transmission::Filter([1.0 - own; 3]);
+            for color in [&mut material.ambient, &mut material.diffuse] {
+                *color = color.map(|x| x * own);
+            }
+        }
+    }
+
+    /// Returns the rays of a lit part, if it mirrors or refracts.
+    pub(super) fn rays(
+        &self,
+        ground: &Ground<'_>,
+        (part, look): (u32, &PartLook<'_>),
+        material: &PhongMaterial,
+    ) -> Option<SurfaceRays> {
+        if self.shot.settings.bounces == Bounces::None {
+            return None;
+        }
+        let Optics { reflection, transmission, index } = look.material.optics;
+        // Files and scripts may hold any number.
+        let share = |x: f64| if x.is_nan() { 0.0 } else { x.clamp(0.0, 1.0) };
+        let specular = material.specular.map(share);
+        let is_dark = reflection == Reflection::Constant && specular == [0.0; 3];
+        let rays = SurfaceRays {
+            reflection: if is_dark { Reflection::None } else { reflection },
+            specular,
+            transmission: match transmission {
+                Transmission::None | Transmission::Opacity => [0.0; 3],
+                Transmission::Filter(filter) => filter.map(share),
+            },
+            index: if Optics::INDICES.contains(&index) { index } else { 1.0 },
+            map: mapped(ground, look, MapKind::Specular).map(|map| map.texture.clone()),
+            is_closed: ground.object.model.mesh.is_part_closed(part),
+        };
+        (rays.reflects() || rays.transmits()).then_some(rays)
+    }
+
+    /// Plans what rays can meet, if any surface of the plan casts rays.
+    pub(super) fn add_surroundings(self, into: &mut Planning) {
+        if !into.plan.casts_rays() {
+            return;
+        }
+        // What the observer does not see may be seen in a mirror, and no light is left out because
+        // of the view. Points that rays meet are no pixels: each is lit.
+        let shot = self.shot.with(Settings { light: LightAt::Pixel, ..self.shot.settings });
+        let plan = FramePlan {
+            light_at: LightAt::Pixel,
+            lit_by_sample: false,
+            draws: Vec::new(),
+            pipelines: Vec::new(),
+            ..into.plan.clone()
+        };
+        let mut around = Planning::new(plan, Notes::default());
+        let Self { observer, shining, .. } = self;
+        Planner { shot: &shot, observer, shining, is_around: true }.add_objects(&mut around);
+        into.plan.surroundings = Some(Box::new(around.plan));
+    }
+}

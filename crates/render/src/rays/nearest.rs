@@ -1,0 +1,323 @@
+//! Finds the nearest surface that a ray meets.
+
+use fearless_simd::{Simd, SimdBase as _, SimdMask as _, f32x8, f64x8};
+use glam::DVec3;
+
+use super::surroundings::{Surroundings, Thing, corners_of};
+use crate::accel::{BVH_BLOCK, BvhBlock, BvhChild, EightBoxes};
+use crate::shadow::triangle::Corners;
+use crate::simd::{Bits, Vec3};
+use marraztu_core::base::math::each;
+
+/// A ray from a point of a triangle, in view space.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ray {
+    pub(crate) from: DVec3,
+    /// The direction, of length 1.
+    pub(crate) towards: DVec3,
+    /// The index of the draw that the ray starts on, and its triangle, which are not met.
+    pub(crate) own: (u32, u32),
+}
+
+/// The point at which a ray meets a surface.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Hit {
+    /// The index of the draw.
+    pub(crate) draw: u32,
+    pub(crate) triangle: u32,
+    /// The weights of the triangle's corners.
+    pub(crate) weights: DVec3,
+    /// The distance from the start of the ray.
+    pub(crate) distance: f64,
+    /// Whether it is the front of the triangle.
+    pub(crate) is_front: bool,
+}
+
+/// The nodes and leaves of a tree that are still to be visited, with the distances of their boxes.
+#[derive(Debug, Default)]
+pub(crate) struct RayStack(Vec<(BvhChild, f32)>);
+
+/// The error of a position and of a parameter in f32, relative to the largest coordinate: four
+/// roundings, twice.
+const SINGLE: f64 = 1.0 / (1 << 21) as f64;
+
+/// The error of a position transformed in f64, relative to the sum of the added terms.
+const DOUBLE: f64 = 1.0 / (1_u64 << 47) as f64;
+
+/// The smallest component of a direction, relative to its largest.
+const LEAST: f64 = 1e-30;
+
+/// A ray in the space of an object, or in view space, for boxes in f32 and triangles in f64.
+#[derive(Clone, Copy, Debug)]
+struct LocalRay {
+    from: DVec3,
+    /// The direction; its largest component is 1.
+    way: DVec3,
+    /// The length of `way` in units of distance in view space.
+    step: f64,
+    /// The largest coordinate of the origin and of the boxes along each axis.
+    origin: [f32; 3],
+    inverse: [f32; 3],
+    /// The padding of boxes, which covers all f32 errors.
+    pad: [f32; 3],
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "the nearest f32 is meant; pads hold it")]
+impl LocalRay {
+    /// Creates a ray in a space with boxes up to the coordinates `far`. `exact` is the error of
+    /// its origin.
+    #[inline(always)]
+    fn new((from, along): (DVec3, DVec3), far: DVec3, exact: DVec3) -> Self {
+        let length = along.abs().max_element();
+        let way = along / length;
+        let inverse = each(way.to_array(), |part| {
+            let part = if part.abs() < LEAST { LEAST.copysign(part) } else { part };
+            (1.0 / part) as f32
+        });
+        let pad = (far + from.abs()) * SINGLE + exact;
+        Self {
+            from,
+            way,
+            step: 1.0 / length,
+            origin: from.as_vec3().to_array(),
+            inverse,
+            pad: each(pad.to_array(), |pad| (pad as f32).next_up()),
+        }
+    }
+
+    /// Transforms a ray to the space of a thing. `reach` is the largest coordinate in view space.
+    #[inline(always)]
+    fn of(ray: &Ray, thing: &Thing<'_>, reach: f64) -> Self {
+        let m = &thing.object_from_view;
+        let columns =
+            m.x_axis.truncate().abs() + m.y_axis.truncate().abs() + m.z_axis.truncate().abs();
+        let reach = reach.max(ray.from.abs().max_element());
+        let exact = (columns * reach + m.w_axis.truncate().abs()) * DOUBLE;
+        let local = (m.transform_point3(ray.from), m.transform_vector3(ray.towards));
+        Self::new(local, thing.bounds.min.abs().max(thing.bounds.max.abs()), exact)
+    }
+
+    /// Returns a bit for each of eight boxes that the ray meets up to a distance, and where it
+    /// enters them.
+    #[inline(always)]
+    fn meeting<S: Simd>(&self, simd: S, boxes: &EightBoxes, before: f64) -> (u64, f32x8<S>) {
+        let end = (before / self.step * (1.0 + SINGLE)) as f32;
+        let mut near = f32x8::splat(simd, 0.0);
+        let mut far = f32x8::splat(simd, end.next_up());
+        for axis in 0..3 {
+            let (origin, inverse, pad) = (self.origin[axis], self.inverse[axis], self.pad[axis]);
+            // The ray enters through the side that its direction points away from.
+            let runs_back = usize::from(inverse < 0.0);
+            let pad = if inverse < 0.0 { -pad } else { pad };
+            let enter = f32x8::from_slice(simd, &boxes.rows[runs_back][axis]);
+            let leave = f32x8::from_slice(simd, &boxes.rows[1 - runs_back][axis]);
+            near = near.max((enter - (origin + pad)) * inverse);
+            far = far.min((leave - (origin - pad)) * inverse);
+        }
+        (far.simd_ge(near).to_bitmask(), near)
+    }
+}
+
+impl Surroundings<'_> {
+    /// Returns the nearest point at which a ray meets a surface. Of several at the same distance,
+    /// the earlier triangle counts, as in the depth test.
+    #[inline(always)]
+    pub(crate) fn nearest<S: Simd>(&self, simd: S, ray: &Ray, stack: &mut RayStack) -> Option<Hit> {
+        let own =
+            Own { ray, corners: self.corners(ray.own.0, ray.own.1), flat: self.flat(ray.own.0) };
+        let around = LocalRay::new((ray.from, ray.towards), DVec3::splat(self.reach), DVec3::ZERO);
+        let mut best = None;
+        for (group, boxes) in self.boxes.iter().enumerate() {
+            let (met, _) = around.meeting(simd, boxes, distance_of(best.as_ref()));
+            for i in Bits(met) {
+                let thing = &self.things[group * EightBoxes::COUNT + i];
+                let local = LocalRay::of(ray, thing, self.reach);
+                self.search(simd, (thing, &local), &own, (stack, &mut best));
+            }
+        }
+        best
+    }
+
+    /// Searches the tree of a thing for a nearer point.
+    #[inline(always)]
+    fn search<S: Simd>(
+        &self,
+        simd: S,
+        (thing, local): (&Thing<'_>, &LocalRay),
+        own: &Own<'_>,
+        (RayStack(stack), best): (&mut RayStack, &mut Option<Hit>),
+    ) {
+        stack.clear();
+        stack.push((thing.tree.root, 0.0));
+        while let Some((child, enters)) = stack.pop() {
+            // A nearer point may have been found since the box was listed.
+            if f64::from(enters) * local.step * (1.0 - SINGLE) > distance_of(best.as_ref()) {
+                continue;
+            }
+            if child.count > 0 {
+                self.search_leaf(simd, (thing, local, child), own, best);
+                continue;
+            }
+            let Some(node) = thing.tree.nodes.get(child.first as usize) else { continue };
+            let (met, near) = local.meeting(simd, &node.boxes, distance_of(best.as_ref()));
+            let near: [f32; EightBoxes::COUNT] = near.into();
+            let first = stack.len();
+            for i in Bits(met) {
+                // The nearest child is visited first: insertion sort, the farthest at the bottom.
+                let mut at = stack.len();
+                stack.push((node.children[i], near[i]));
+                while at > first && stack[at - 1].1 < stack[at].1 {
+                    stack.swap(at - 1, at);
+                    at -= 1;
+                }
+            }
+        }
+    }
+
+    /// Searches the triangles of a leaf for a nearer point.
+    #[inline(always)]
+    fn search_leaf<S: Simd>(
+        &self,
+        simd: S,
+        (thing, local, leaf): (&Thing<'_>, &LocalRay, BvhChild),
+        own: &Own<'_>,
+        best: &mut Option<Hit>,
+    ) {
+        let mut left = leaf.count as usize;
+        for block in &thing.tree.blocks[leaf.blocks()] {
+            let crossed = Crossed::of(simd, block, local);
+            // The last block repeats its last triangle.
+            let used = (1 << left.min(BVH_BLOCK)) - 1;
+            left = left.saturating_sub(BVH_BLOCK);
+            let within = crossed.up_to(simd, distance_of(best.as_ref()) / local.step);
+            for i in Bits(crossed.inside & within & used) {
+                let hit = crossed.hit(i, thing, (block.numbers[i], local.step));
+                let is_nearer = best.is_none_or(|best| hit.is_before(&best));
+                if is_nearer && own.may_meet(&hit, thing) {
+                    let side = (hit.is_front, hit.weights);
+                    if thing.stops(self.plan, hit.triangle, side) {
+                        *best = Some(hit);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Returns the distance of a point, or infinity.
+#[inline(always)]
+fn distance_of(hit: Option<&Hit>) -> f64 {
+    hit.map_or(f64::INFINITY, |hit| hit.distance)
+}
+
+impl Hit {
+    /// Returns whether the point is nearer than another, or as near and earlier in the frame.
+    fn is_before(&self, other: &Self) -> bool {
+        let key = |hit: &Self| (hit.draw, hit.triangle);
+        self.distance < other.distance
+            || (self.distance == other.distance && key(self) < key(other))
+    }
+}
+
+/// The triangle that a ray starts on.
+struct Own<'a> {
+    ray: &'a Ray,
+    corners: Corners,
+    flat: f64,
+}
+
+impl Own<'_> {
+    /// Returns whether the ray can meet a triangle: it is another one, and the first triangle
+    /// reaches to the side of its plane that the ray comes from.
+    fn may_meet(&self, hit: &Hit, thing: &Thing<'_>) -> bool {
+        if self.ray.own == (hit.draw, hit.triangle) {
+            return false;
+        }
+        // Far away, rounding decides nothing.
+        let [p, q, r] = self.corners;
+        let size = (q - p).abs().max((r - p).abs()).max_element();
+        if hit.distance > 2.0 * size {
+            return true;
+        }
+        let [a, b, c] = corners_of(thing.draw, hit.triangle);
+        let normal = (b - a).cross(c - a);
+        let side = if normal.dot(self.ray.towards) > 0.0 { -1.0 } else { 1.0 };
+        let least = self.flat.max(thing.flat()) * normal.length();
+        self.corners.iter().any(|corner| side * normal.dot(*corner - a) > least)
+    }
+}
+
+/// The points at which a ray crosses the planes of eight triangles.
+struct Crossed<S: Simd> {
+    /// A bit for each triangle that it crosses inside, in front of its start.
+    inside: u64,
+    /// The edge functions, which are proportional to the weights of the corners, and their sum.
+    parts: [f64x8<S>; 3],
+    sum: f64x8<S>,
+    /// The ray parameters.
+    at: f64x8<S>,
+}
+
+impl<S: Simd> Crossed<S> {
+    /// With the corners A, B and C relative to the start of the ray, and its direction D, the
+    /// weight of A is proportional to D . (B x C). The triangle on the other side of an edge has
+    /// the same number with the opposite sign.
+    #[inline(always)]
+    fn of(simd: S, block: &BvhBlock, ray: &LocalRay) -> Self {
+        let zero = f64x8::splat(simd, 0.0);
+        let [x, y, z] = ray.way.to_array();
+        let way = Vec3([f64x8::splat(simd, x), f64x8::splat(simd, y), f64x8::splat(simd, z)]);
+        let [a, b, c] = [
+            relative(simd, &block.corners[0], ray.from),
+            relative(simd, &block.corners[1], ray.from),
+            relative(simd, &block.corners[2], ray.from),
+        ];
+        let parts = [way.dot(b.cross(c)), way.dot(c.cross(a)), way.dot(a.cross(b))];
+        let sum = parts[0] + parts[1] + parts[2];
+        let front = parts[0].simd_ge(zero) & parts[1].simd_ge(zero) & parts[2].simd_ge(zero);
+        let back = parts[0].simd_le(zero) & parts[1].simd_le(zero) & parts[2].simd_le(zero);
+        // The point is the weighted mean of the corners.
+        let along = parts[0] * a.dot(way) + parts[1] * b.dot(way) + parts[2] * c.dot(way);
+        let at = along / (sum * way.dot(way));
+        let some = (front | back).to_bitmask() & !sum.simd_eq(zero).to_bitmask();
+        Self { inside: some & at.simd_gt(zero).to_bitmask(), parts, sum, at }
+    }
+
+    /// Returns a bit for each triangle that is crossed at this parameter or before.
+    #[inline(always)]
+    fn up_to(&self, simd: S, most: f64) -> u64 {
+        self.at.simd_le(f64x8::splat(simd, most)).to_bitmask()
+    }
+
+    /// Returns the point on one of the triangles.
+    fn hit(&self, i: usize, thing: &Thing<'_>, (triangle, step): (u32, f64)) -> Hit {
+        let pick = |row: f64x8<S>| <[f64; BVH_BLOCK]>::from(row)[i];
+        let [a, b, c] = self.parts;
+        let sum = pick(self.sum);
+        Hit {
+            draw: thing.index,
+            triangle,
+            weights: DVec3::new(pick(a), pick(b), pick(c)) / sum,
+            distance: pick(self.at) * step,
+            // The sum is the product of the direction and the normal, in object space: a mirrored
+            // placement does not turn a body inside out.
+            is_front: sum < 0.0,
+        }
+    }
+}
+
+/// Returns a corner of eight triangles relative to a point.
+#[inline(always)]
+fn relative<S: Simd>(simd: S, rows: &[[f32; BVH_BLOCK]; 3], to: DVec3) -> Vec3<f64x8<S>> {
+    let mut wide = [[0.0; BVH_BLOCK]; 3];
+    for (axis, row) in rows.iter().enumerate() {
+        for (wide, x) in wide[axis].iter_mut().zip(row) {
+            *wide = f64::from(*x) - to[axis];
+        }
+    }
+    Vec3([
+        f64x8::from_slice(simd, &wide[0]),
+        f64x8::from_slice(simd, &wide[1]),
+        f64x8::from_slice(simd, &wide[2]),
+    ])
+}
