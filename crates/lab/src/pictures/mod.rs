@@ -126,6 +126,14 @@ pub fn all() -> Vec<TestPicture> {
         picture("texture, four samples, each lit and filtered", &textured, &view, filtered),
         picture("texture, ideal", &textured, &view, settings.ideal()),
     ];
+    let mirrors = io::lesson_scene("mirrors").expect("the program has it");
+    for (name, settings) in [
+        ("mirrors and glass", settings),
+        ("mirrors and glass in f64", exact),
+        ("mirrors and glass, sixteen samples", of(Samples::Sixteen)),
+    ] {
+        all.push(picture(name, &mirrors.scene, &mirrors.view, settings));
+    }
     // One picture for each choice that differs from the default and is portable.
     let bent = bent(&textured);
     for (axis, choice) in AXES.iter().flat_map(|axis| axis.choices.iter().map(move |it| (axis, it)))
@@ -133,7 +141,11 @@ pub fn all() -> Vec<TestPicture> {
         let rare = choice.of(&settings);
         if rare != settings {
             let name = format!("{} {}", axis.key, choice.word);
-            all.push(picture(&name, &bent, &view, rare));
+            let (scene, view) = match axis.key {
+                "bounces" => (&mirrors.scene, &mirrors.view),
+                _ => (&bent, &view),
+            };
+            all.push(picture(&name, scene, view, rare));
         }
     }
     all

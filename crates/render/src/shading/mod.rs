@@ -13,9 +13,9 @@
 //! triangle covers fully (`blocks`) take all of these steps in one pass without a list
 //! (`full_blocks`). Blocks that transparent triangles reach are coloured layer by layer (`layers`),
 //! each with its opacity, and combined by alpha blending (`blend`). Surfaces that mirror or refract
-//! send out rays (`bounces`, by the formulas of `optics`), and the points that these meet are shaded
-//! by the same stages (`hits`). With light per face,
-//! `new_faces` lights a tile's triangles once, into a table (`face_colors`).
+//! send out rays (`bounces`, by the formulas of `optics`), and the points that these meet are
+//! shaded by the same stages (`hits`). With light per face, `new_faces` lights a tile's triangles
+//! once, into a table (`face_colors`).
 //!
 //! f32 and f64 share all of this (`interpolated`) except the paths without lists, which f32 alone
 //! has (`path_number`).
