@@ -122,8 +122,8 @@ pub(crate) fn found(clock: &mut FakeClock, source: &mut FakeSource) -> Findings 
     bench.run(candidates, &mut |_| {}).unwrap()
 }
 
-/// The first scene with shadows, a ball with bumps, and a stretched, transparent, textured triangle
-/// with an exponent of 32.
+/// The first scene with shadows, a ball with bumps, and a stretched, transparent, textured and
+/// mirroring triangle with an exponent of 32.
 fn textured_scene() -> (marraztu_core::scene::Scene, marraztu_core::scene::View) {
     use marraztu_core::base::Shared;
     use marraztu_core::scene::*;
@@ -136,7 +136,9 @@ fn textured_scene() -> (marraztu_core::scene::Scene, marraztu_core::scene::View)
     let options = LoadOptions::default();
     let loaded = io::parse(text, "triangle.obj", None, &options, &io::Progress::new()).unwrap();
     let [ambient, diffuse, specular] = [[0.5; 3]; 3];
-    let material = Material { specular, exponent: 32.0, ..Material::matte(ambient, diffuse) };
+    let optics = Optics { reflection: Reflection::Constant, ..Optics::NONE };
+    let dull = Material::matte(ambient, diffuse);
+    let material = Material { specular, exponent: 32.0, optics, ..dull };
     let mut object = Object::new(Shared::new(loaded.model), MaterialChoice::Own(material));
     let stretch = glam::DMat4::from_scale(glam::DVec3::new(1.0, 2.0, 1.0));
     object.placement = Tracked::new(stretch);

@@ -99,8 +99,9 @@ fn the_draft_colours_a_quarter_of_the_pixels() {
             filled + corners + lit + alone + joined + tiny + faces
         };
         let (draft, default) = (pixels(&preset("draft")), pixels(&preset("default")));
-        // Lines are as wide in drawn pixels, so they have half of their pixels.
-        assert!(draft * 3 <= default + 300, "{name}: {draft} of {default}");
+        // Lines are as wide in drawn pixels, so they have half of their pixels. Small pictures have
+        // few blocks, and some paths count whole ones.
+        assert!(draft * 3 <= default + 512, "{name}: {draft} of {default}");
     }
 }
 
