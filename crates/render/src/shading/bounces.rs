@@ -21,17 +21,16 @@ use super::map_rows::Map;
 use super::map_texels::TexelSource;
 use super::optics::{Media, Meeting, reflectance};
 use super::shader::Shader;
+use super::surroundings::{corners_of, normals_of};
 use crate::frame::color_path::ColorPath;
 use crate::frame::draw::{Draw, Pipeline};
 use crate::frame::extras::SurfaceRays;
 use crate::frame::{Eye, FramePlan};
 use crate::lights::Rows;
-use crate::rays::surroundings::{corners_of, normals_of};
-use crate::rays::{Hit, Ray, RayStack};
+use crate::rays::{Corners, Hit, OwnTriangles, Ray, RayStack};
 use crate::screen::sample_positions::MANY;
 use crate::screen::weights::Weights;
 use crate::shadow::rays::RayCount;
-use crate::shadow::triangle::Corners;
 use crate::simd::{BATCH, Bits, dispatch};
 use marraztu_core::base::color::linear;
 use marraztu_core::base::math::unit;
@@ -45,7 +44,7 @@ pub(crate) struct Bounces<T> {
     branches: Vec<Branch>,
     next: Vec<Branch>,
     met: Vec<Option<Met>>,
-    /// The points of the generation, sorted by surface: the draw, the pipeline and the branch.
+    /// The points of the generation, sorted by surface: the thing, the pipeline and the branch.
     order: Vec<[u32; 3]>,
     stack: RayStack,
     light: Rows<T>,
@@ -92,8 +91,7 @@ struct Met {
 /// A point that sends rays on.
 struct Sender<'a> {
     rays: &'a SurfaceRays,
-    /// The index of the draw among the surroundings, and its triangle.
-    own: (u32, u32),
+    own: OwnTriangles,
     draw: &'a Draw,
     position: DVec3,
     corners: Corners,
@@ -154,7 +152,7 @@ impl<T: ShadingNumber> Shader<T> {
         to: &mut Bounces<T>,
     ) {
         let ShadingContext { plan, frame, .. } = *group.context;
-        let Some(own) = around.of_draws[group.draw_index as usize] else { return };
+        let Some(thing) = around.of_draws[group.draw_index as usize] else { return };
         let mapped = self.mapped_specular(group, rays);
         let positions = frame.sample_positions();
         let share = 1.0 / f64::from(positions.shares());
@@ -197,7 +195,7 @@ impl<T: ShadingNumber> Shader<T> {
                     let face = if outside.dot(towards) > 0.0 { -outside } else { outside };
                     let sender = Sender {
                         rays,
-                        own: (own, number),
+                        own: OwnTriangles::one(thing, number),
                         draw,
                         position,
                         corners,
@@ -207,7 +205,7 @@ impl<T: ShadingNumber> Shader<T> {
                         mapped: mapped[i],
                     };
                     let first = Branch {
-                        ray: Ray { from: DVec3::ZERO, towards, own: (own, number) },
+                        ray: Ray { from: DVec3::ZERO, towards, own: None },
                         weight: [share; 3],
                         target: i,
                         cone,
@@ -278,15 +276,19 @@ impl<T: ShadingNumber> Bounces<T> {
         let Self { branches, met, order, stack, .. } = self;
         met.clear();
         let surroundings = &around.surroundings;
+        let stops = |hit: &Hit| surroundings.stops(hit);
         dispatch!(around.context.level, simd => for branch in &*branches {
-            let hit = surroundings.nearest(simd, &branch.ray, stack);
-            met.push(hit.map(|hit| branch.met(hit, surroundings.corners(hit.draw, hit.triangle))));
+            let hit = surroundings.things.nearest(simd, &branch.ray, &stops, stack);
+            met.push(hit.map(|hit| {
+                let thing = &surroundings.things.all[hit.thing as usize];
+                branch.met(hit, thing.corners(hit.triangle))
+            }));
         });
         order.clear();
         for (i, met) in (0_u32..).zip(&*met) {
             if let Some(Met { point: Point { hit, .. }, .. }) = met {
-                let pipeline = surroundings.draw(hit.draw).pipeline_of(hit.triangle);
-                order.push([hit.draw, pipeline, i]);
+                let (draw, _) = surroundings.draw(hit.thing);
+                order.push([hit.thing, draw.pipeline_of(hit.triangle), i]);
             }
         }
         order.sort_unstable();
@@ -298,8 +300,8 @@ impl<T: ShadingNumber> Bounces<T> {
         let context = &around.context;
         let mut points = Vec::with_capacity(MOST);
         for same in order.chunk_by(|a, b| a[..2] == b[..2]) {
-            let [draw_index, pipeline, _] = same[0];
-            let draw = around.surroundings.draw(draw_index);
+            let [thing, pipeline, _] = same[0];
+            let (draw, draw_index) = around.surroundings.draw(thing);
             let shaded = match &context.plan.pipelines[pipeline as usize] {
                 Pipeline::Shaded(shaded) => Some(shaded),
                 Pipeline::Flat(_) => None,
@@ -345,13 +347,13 @@ impl<T: ShadingNumber> Bounces<T> {
             };
             let weight = branch.weight.map(|weight| weight * met.opacity);
             add(&mut sums[branch.target], weight, met.light);
-            let Hit { draw: index, triangle, is_front, .. } = met.point.hit;
-            let draw = around.surroundings.draw(index);
+            let Hit { thing, triangle, is_front, .. } = met.point.hit;
+            let (draw, _) = around.surroundings.draw(thing);
+            let own = OwnTriangles::one(thing, triangle);
             // What is behind a transparent surface is seen through it, unbent.
             if met.opacity < 1.0 && branch.layers < MOST_LAYERS {
                 let rest = branch.weight.map(|weight| weight * (1.0 - met.opacity));
-                let own = (index, triangle);
-                let ray = Ray { from: met.point.position(), own, ..branch.ray };
+                let ray = Ray { from: met.point.position(), own: Some(own), ..branch.ray };
                 let cone = branch.cone.after(met.point.hit.distance);
                 let layers = branch.layers + 1;
                 push(Branch { ray, weight: rest, cone, layers, ..*branch }, next);
@@ -363,7 +365,7 @@ impl<T: ShadingNumber> Bounces<T> {
             };
             let sender = Sender {
                 rays,
-                own: (index, triangle),
+                own,
                 draw,
                 position: met.point.position(),
                 corners: met.point.corners,
@@ -401,9 +403,9 @@ fn send_on(it: &Sender<'_>, branch: &Branch, to: &mut Vec<Branch>) {
     let specular = std::array::from_fn(|i| specular[i] * it.mapped[i]);
     let transmits = it.rays.transmits();
     // Only closed bodies have an inside.
-    let part = it.draw.model.mesh.polygon_of(it.own.1);
+    let part = it.draw.model.mesh.polygon_of(it.own.first);
     let part = it.draw.model.mesh.polygon_parts()[part as usize];
-    let body = u64::from(it.own.0) << 32 | u64::from(part);
+    let body = u64::from(it.own.thing) << 32 | u64::from(part);
     let (indices, media) = match *is_closed && transmits {
         true => branch.media.across(body, *index, it.is_front),
         false => ([1.0, *index], branch.media),
@@ -420,11 +422,11 @@ fn send_on(it: &Sender<'_>, branch: &Branch, to: &mut Vec<Branch>) {
         None if transmits => [1.0; 3],
         _ => reflectance(*reflection, specular, cosine, indices),
     };
-    let bend = curvature(&it.corners, it.draw, (it.own.1, it.is_front));
+    let bend = curvature(&it.corners, it.draw, (it.own.first, it.is_front));
     let Cone { width, spread } = branch.cone;
     let from = it.position;
     let sent = |towards: DVec3, spread: f64, share: [f64; 3], media: Media| Branch {
-        ray: Ray { from, towards, own: it.own },
+        ray: Ray { from, towards, own: Some(it.own) },
         weight: std::array::from_fn(|i| branch.weight[i] * share[i]),
         cone: Cone { width, spread },
         bounces: branch.bounces + 1,

@@ -9,11 +9,11 @@ use super::face_colors::FaceColors;
 use super::fragments::Fragments;
 use super::light::Lit;
 use super::light_terms::LightTerms;
+use super::surroundings::Surroundings;
 use crate::frame::FramePlan;
 use crate::frame::color_path::{ColorPath, ColorPaths};
 use crate::frame::draw::{Draw, Pipeline, Shaded, Stage};
 use crate::raster::geometry::ScreenGeometry;
-use crate::rays::surroundings::Surroundings;
 use crate::shadow::tracer::Tracer;
 
 /// The parts of a frame that shading reads.
@@ -39,7 +39,7 @@ pub(crate) struct ShadingContext<'a, T> {
 pub(crate) struct Around<'a, T> {
     pub(crate) surroundings: Surroundings<'a>,
     pub(crate) context: ShadingContext<'a, T>,
-    /// The index of each draw of the picture among those of the surroundings.
+    /// The thing of each draw of the picture.
     pub(crate) of_draws: Vec<Option<u32>>,
 }
 
@@ -61,15 +61,13 @@ impl<'a, T> Around<'a, T> {
         let plan = picture.surroundings.as_deref()?;
         let items = plan.draws.iter().map(|draw| draw.item);
         let of_items: BTreeMap<_, _> = items.zip(0_u32..).collect();
-        let own = |draw: &Draw| of_items.get(&draw.item).copied();
+        let surroundings = Surroundings::new(plan);
+        let own = |draw: &Draw| surroundings.thing_of(*of_items.get(&draw.item)?);
+        let of_draws = picture.draws.iter().map(own).collect();
         let (faces, around) = (None, None);
         let context =
             ShadingContext { level, plan, frame, lit, terms, faces, paths, tracer, around };
-        Some(Self {
-            surroundings: Surroundings::new(plan),
-            context,
-            of_draws: picture.draws.iter().map(own).collect(),
-        })
+        Some(Self { surroundings, context, of_draws })
     }
 }
 

@@ -54,6 +54,7 @@ mod shader;
 pub(crate) mod shadows;
 pub(crate) mod surface;
 mod surface_maps;
+pub(crate) mod surroundings;
 mod texels;
 mod tiny;
 mod tiny_triangles;

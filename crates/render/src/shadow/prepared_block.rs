@@ -9,8 +9,9 @@ use fearless_simd::{Select as _, Simd, SimdBase as _, SimdMask as _, f64x8};
 use glam::{DMat4, DVec3};
 
 use super::shaft::Around;
-use super::triangle::{Corners, Decided, ERROR, OFF_PLANE, Prepared, side};
+use super::triangle::{Decided, ERROR, OFF_PLANE, Prepared, side};
 use crate::accel::{BVH_BLOCK, BvhBlock};
+use crate::rays::Corners;
 use crate::simd::Vec3;
 use marraztu_core::base::math::each;
 

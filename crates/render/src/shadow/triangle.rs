@@ -19,8 +19,7 @@
 use glam::DVec3;
 use robust::{Coord3D, orient3d};
 
-/// The corners of a triangle in world space.
-pub(crate) type Corners = [DVec3; 3];
+use crate::rays::Corners;
 
 /// The error factor 128 u: see the [module](self).
 pub(super) const ERROR: f64 = 1.0 / (1_u64 << 46) as f64;
@@ -28,11 +27,6 @@ pub(super) const ERROR: f64 = 1.0 / (1_u64 << 46) as f64;
 /// The error of a point's distance from the plane of its triangle, relative to the triangle's
 /// largest coordinate: about ten times the rounding of three products and two sums.
 pub(super) const OFF_PLANE: f64 = 1.0 / (1_u64 << 46) as f64;
-
-/// The distance within which triangles lie in one plane, relative to the largest coordinate in
-/// object space: files round coordinates to six decimals, and meshes to f32. Doubled faces and
-/// decals would shade each other in blotches otherwise.
-pub(crate) const FLAT: f64 = 1.0 / (1_u64 << 20) as f64;
 
 fn place(p: DVec3) -> Coord3D<f64> {
     Coord3D { x: p.x, y: p.y, z: p.z }

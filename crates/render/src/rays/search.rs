@@ -1,37 +1,15 @@
-//! Finds the nearest surface that a ray meets.
+//! Searches the trees of things for the surfaces that a ray meets.
 
 use fearless_simd::{Simd, SimdBase as _, SimdMask as _, f32x8, f64x8};
 use glam::DVec3;
 
-use super::surroundings::{Surroundings, Thing, corners_of};
+use super::{Corners, Hit, OwnTriangles, Ray, Thing, Things};
 use crate::accel::{BVH_BLOCK, BvhBlock, BvhChild, EightBoxes};
-use crate::shadow::triangle::Corners;
 use crate::simd::{Bits, Vec3};
 use marraztu_core::base::math::each;
 
-/// A ray from a point of a triangle, in view space.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Ray {
-    pub(crate) from: DVec3,
-    /// The direction, of length 1.
-    pub(crate) towards: DVec3,
-    /// The index of the draw that the ray starts on, and its triangle, which are not met.
-    pub(crate) own: (u32, u32),
-}
-
-/// The point at which a ray meets a surface.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Hit {
-    /// The index of the draw.
-    pub(crate) draw: u32,
-    pub(crate) triangle: u32,
-    /// The weights of the triangle's corners.
-    pub(crate) weights: DVec3,
-    /// The distance from the start of the ray.
-    pub(crate) distance: f64,
-    /// Whether it is the front of the triangle.
-    pub(crate) is_front: bool,
-}
+/// Decides whether a point of a surface stops a ray.
+type Stops<'a> = &'a dyn Fn(&Hit) -> bool;
 
 /// The nodes and leaves of a tree that are still to be visited, with the distances of their boxes.
 #[derive(Debug, Default)]
@@ -47,13 +25,13 @@ const DOUBLE: f64 = 1.0 / (1_u64 << 47) as f64;
 /// The smallest component of a direction, relative to its largest.
 const LEAST: f64 = 1e-30;
 
-/// A ray in the space of an object, or in view space, for boxes in f32 and triangles in f64.
+/// A ray in the space of an object, or in its own, for boxes in f32 and triangles in f64.
 #[derive(Clone, Copy, Debug)]
 struct LocalRay {
     from: DVec3,
     /// The direction; its largest component is 1.
     way: DVec3,
-    /// The length of `way` in units of distance in view space.
+    /// The length of `way` in units of the ray.
     step: f64,
     /// The largest coordinate of the origin and of the boxes along each axis.
     origin: [f32; 3],
@@ -85,10 +63,10 @@ impl LocalRay {
         }
     }
 
-    /// Transforms a ray to the space of a thing. `reach` is the largest coordinate in view space.
+    /// Transforms a ray to the space of a thing. `reach` is the largest coordinate in the space of rays.
     #[inline(always)]
     fn of(ray: &Ray, thing: &Thing<'_>, reach: f64) -> Self {
-        let m = &thing.object_from_view;
+        let m = &thing.object_from_rays;
         let columns =
             m.x_axis.truncate().abs() + m.y_axis.truncate().abs() + m.z_axis.truncate().abs();
         let reach = reach.max(ray.from.abs().max_element());
@@ -118,48 +96,102 @@ impl LocalRay {
     }
 }
 
-impl Surroundings<'_> {
+impl Things<'_> {
     /// Returns the nearest point at which a ray meets a surface. Of several at the same distance,
     /// the earlier triangle counts, as in the depth test.
     #[inline(always)]
-    pub(crate) fn nearest<S: Simd>(&self, simd: S, ray: &Ray, stack: &mut RayStack) -> Option<Hit> {
-        let own =
-            Own { ray, corners: self.corners(ray.own.0, ray.own.1), flat: self.flat(ray.own.0) };
-        let around = LocalRay::new((ray.from, ray.towards), DVec3::splat(self.reach), DVec3::ZERO);
+    pub(crate) fn nearest<S: Simd>(
+        &self,
+        simd: S,
+        ray: &Ray,
+        stops: Stops<'_>,
+        stack: &mut RayStack,
+    ) -> Option<Hit> {
         let mut best = None;
-        for (group, boxes) in self.boxes.iter().enumerate() {
-            let (met, _) = around.meeting(simd, boxes, distance_of(best.as_ref()));
-            for i in Bits(met) {
-                let thing = &self.things[group * EightBoxes::COUNT + i];
-                let local = LocalRay::of(ray, thing, self.reach);
-                self.search(simd, (thing, &local), &own, (stack, &mut best));
-            }
-        }
+        self.search::<S, false>(simd, (ray, stops), stack, (f64::INFINITY, &mut best));
         best
     }
 
-    /// Searches the tree of a thing for a nearer point.
+    /// Returns whether a surface stops a ray before it has gone a distance.
     #[inline(always)]
-    fn search<S: Simd>(
+    pub(crate) fn stop<S: Simd>(
         &self,
         simd: S,
-        (thing, local): (&Thing<'_>, &LocalRay),
-        own: &Own<'_>,
-        (RayStack(stack), best): (&mut RayStack, &mut Option<Hit>),
+        (ray, distance): (&Ray, f64),
+        stops: Stops<'_>,
+        stack: &mut RayStack,
+    ) -> bool {
+        let mut best = None;
+        self.search::<S, true>(simd, (ray, stops), stack, (distance, &mut best));
+        best.is_some()
+    }
+
+    /// Searches for the nearest point up to a distance, or for `ANY`.
+    #[inline(always)]
+    fn search<S: Simd, const ANY: bool>(
+        &self,
+        simd: S,
+        (ray, stops): (&Ray, Stops<'_>),
+        stack: &mut RayStack,
+        (most, best): (f64, &mut Option<Hit>),
     ) {
+        let own = Own::new(self, ray);
+        let around = LocalRay::new((ray.from, ray.towards), DVec3::splat(self.reach), DVec3::ZERO);
+        for (group, boxes) in self.boxes.iter().enumerate() {
+            let (met, _) = around.meeting(simd, boxes, distance_of(best.as_ref(), most));
+            for i in Bits(met) {
+                let index = group * EightBoxes::COUNT + i;
+                let thing = &self.all[index];
+                let local = LocalRay::of(ray, thing, self.reach);
+                let index = u32::try_from(index).unwrap_or(u32::MAX);
+                let of = Search { index, thing, local: &local, own: &own, stops, most };
+                of.run::<S, ANY>(simd, stack, best);
+                if ANY && best.is_some() {
+                    return;
+                }
+            }
+        }
+    }
+}
+
+/// The search of a thing.
+struct Search<'a> {
+    index: u32,
+    thing: &'a Thing<'a>,
+    local: &'a LocalRay,
+    own: &'a Own<'a>,
+    stops: Stops<'a>,
+    /// The length of the ray.
+    most: f64,
+}
+
+impl Search<'_> {
+    /// Searches the tree for a nearer point.
+    #[inline(always)]
+    fn run<S: Simd, const ANY: bool>(
+        &self,
+        simd: S,
+        RayStack(stack): &mut RayStack,
+        best: &mut Option<Hit>,
+    ) {
+        let Self { thing, local, most, .. } = *self;
         stack.clear();
         stack.push((thing.tree.root, 0.0));
         while let Some((child, enters)) = stack.pop() {
             // A nearer point may have been found since the box was listed.
-            if f64::from(enters) * local.step * (1.0 - SINGLE) > distance_of(best.as_ref()) {
+            let nearest = distance_of(best.as_ref(), most);
+            if f64::from(enters) * local.step * (1.0 - SINGLE) > nearest {
                 continue;
             }
             if child.count > 0 {
-                self.search_leaf(simd, (thing, local, child), own, best);
+                self.search_leaf::<S, ANY>(simd, child, best);
+                if ANY && best.is_some() {
+                    return;
+                }
                 continue;
             }
             let Some(node) = thing.tree.nodes.get(child.first as usize) else { continue };
-            let (met, near) = local.meeting(simd, &node.boxes, distance_of(best.as_ref()));
+            let (met, near) = local.meeting(simd, &node.boxes, nearest);
             let near: [f32; EightBoxes::COUNT] = near.into();
             let first = stack.len();
             for i in Bits(met) {
@@ -176,27 +208,27 @@ impl Surroundings<'_> {
 
     /// Searches the triangles of a leaf for a nearer point.
     #[inline(always)]
-    fn search_leaf<S: Simd>(
+    fn search_leaf<S: Simd, const ANY: bool>(
         &self,
         simd: S,
-        (thing, local, leaf): (&Thing<'_>, &LocalRay, BvhChild),
-        own: &Own<'_>,
+        leaf: BvhChild,
         best: &mut Option<Hit>,
     ) {
+        let Self { index, thing, local, own, stops, most } = *self;
         let mut left = leaf.count as usize;
         for block in &thing.tree.blocks[leaf.blocks()] {
             let crossed = Crossed::of(simd, block, local);
             // The last block repeats its last triangle.
             let used = (1 << left.min(BVH_BLOCK)) - 1;
             left = left.saturating_sub(BVH_BLOCK);
-            let within = crossed.up_to(simd, distance_of(best.as_ref()) / local.step);
+            let within = crossed.up_to(simd, distance_of(best.as_ref(), most) / local.step);
             for i in Bits(crossed.inside & within & used) {
-                let hit = crossed.hit(i, thing, (block.numbers[i], local.step));
+                let hit = crossed.hit(i, (index, block.numbers[i]), local.step);
                 let is_nearer = best.is_none_or(|best| hit.is_before(&best));
-                if is_nearer && own.may_meet(&hit, thing) {
-                    let side = (hit.is_front, hit.weights);
-                    if thing.stops(self.plan, hit.triangle, side) {
-                        *best = Some(hit);
+                if is_nearer && own.may_meet(&hit, thing) && (thing.is_solid || stops(&hit)) {
+                    *best = Some(hit);
+                    if ANY {
+                        return;
                     }
                 }
             }
@@ -204,46 +236,67 @@ impl Surroundings<'_> {
     }
 }
 
-/// Returns the distance of a point, or infinity.
+/// Returns the distance of a point, or the length of the ray.
 #[inline(always)]
-fn distance_of(hit: Option<&Hit>) -> f64 {
-    hit.map_or(f64::INFINITY, |hit| hit.distance)
+fn distance_of(hit: Option<&Hit>, most: f64) -> f64 {
+    hit.map_or(most, |hit| hit.distance)
 }
 
 impl Hit {
     /// Returns whether the point is nearer than another, or as near and earlier in the frame.
     fn is_before(&self, other: &Self) -> bool {
-        let key = |hit: &Self| (hit.draw, hit.triangle);
+        let key = |hit: &Self| (hit.thing, hit.triangle);
         self.distance < other.distance
             || (self.distance == other.distance && key(self) < key(other))
     }
 }
 
-/// The triangle that a ray starts on.
+/// The triangles that a ray starts on.
 struct Own<'a> {
     ray: &'a Ray,
-    corners: Corners,
+    /// The corners of the triangle of a rounded point.
+    corners: Option<Corners>,
     flat: f64,
+    /// The distance within which rounding may decide that a ray meets something.
+    close: f64,
 }
 
-impl Own<'_> {
+/// The rounding of a start, relative to the largest coordinate.
+const ROUNDED: f64 = 1.0 / (1_u64 << 40) as f64;
+
+impl<'a> Own<'a> {
+    fn new(things: &Things<'_>, ray: &'a Ray) -> Self {
+        let far = things.reach.max(ray.from.abs().max_element());
+        let rounded = ray.own.filter(|own| own.is_rounded);
+        let thing = rounded.map(|own| (own, &things.all[own.thing as usize]));
+        let Some((own, thing)) = thing else {
+            return Self { ray, corners: None, flat: 0.0, close: far * ROUNDED };
+        };
+        let corners = thing.corners(own.first);
+        let [p, q, r] = corners;
+        let size = (q - p).abs().max((r - p).abs()).max_element();
+        Self { ray, corners: Some(corners), flat: thing.flat, close: 2.0 * size }
+    }
+
     /// Returns whether the ray can meet a triangle: it is another one, and the first triangle
     /// reaches to the side of its plane that the ray comes from.
     fn may_meet(&self, hit: &Hit, thing: &Thing<'_>) -> bool {
-        if self.ray.own == (hit.draw, hit.triangle) {
+        let is_own = |own: OwnTriangles| {
+            own.thing == hit.thing && (own.first..own.end).contains(&hit.triangle)
+        };
+        if self.ray.own.is_some_and(is_own) {
             return false;
         }
         // Far away, rounding decides nothing.
-        let [p, q, r] = self.corners;
-        let size = (q - p).abs().max((r - p).abs()).max_element();
-        if hit.distance > 2.0 * size {
+        if hit.distance > self.close {
             return true;
         }
-        let [a, b, c] = corners_of(thing.draw, hit.triangle);
+        let Some(own) = &self.corners else { return false };
+        let [a, b, c] = thing.corners(hit.triangle);
         let normal = (b - a).cross(c - a);
         let side = if normal.dot(self.ray.towards) > 0.0 { -1.0 } else { 1.0 };
-        let least = self.flat.max(thing.flat()) * normal.length();
-        self.corners.iter().any(|corner| side * normal.dot(*corner - a) > least)
+        let least = self.flat.max(thing.flat) * normal.length();
+        own.iter().any(|corner| side * normal.dot(*corner - a) > least)
     }
 }
 
@@ -290,12 +343,12 @@ impl<S: Simd> Crossed<S> {
     }
 
     /// Returns the point on one of the triangles.
-    fn hit(&self, i: usize, thing: &Thing<'_>, (triangle, step): (u32, f64)) -> Hit {
+    fn hit(&self, i: usize, (thing, triangle): (u32, u32), step: f64) -> Hit {
         let pick = |row: f64x8<S>| <[f64; BVH_BLOCK]>::from(row)[i];
         let [a, b, c] = self.parts;
         let sum = pick(self.sum);
         Hit {
-            draw: thing.index,
+            thing,
             triangle,
             weights: DVec3::new(pick(a), pick(b), pick(c)) / sum,
             distance: pick(self.at) * step,
