@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use glam::{DMat4, DVec3};
 use marraztu_core::accuracy::{
     Arithmetic, Bounces, BumpFilter, Coverage, DepthFormat, Filter, FormerAxis, Interpolation,
-    LightAt, LightValues, NormalMatrix, Resolution, Rounding, Samples, Settings, ShadowMethod,
-    SpecularForm, Subpixels, Tangents, Terminator, Transparency, VertexArithmetic,
+    LightAt, LightSamples, LightValues, NormalMatrix, Resolution, Rounding, Samples, Settings,
+    ShadowMethod, SpecularForm, Subpixels, Tangents, Terminator, Transparency, VertexArithmetic,
 };
 use marraztu_core::base::Shared;
 use marraztu_core::base::color::Color;
@@ -195,6 +195,7 @@ fn rich(folder: &Path, numbers: [f64; 4]) -> (Scene, View, Settings) {
         transparency: Transparency::Objects,
         shadow_method: ShadowMethod::Map2048Pcf,
         terminator: Terminator::Smooth,
+        light_samples: LightSamples::Four,
         bounces: Bounces::Two,
         former_normalising: FormerAxis,
         former_faint: FormerAxis,

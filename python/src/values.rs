@@ -7,8 +7,8 @@ use marraztu_core::accuracy::{ACCURACY_PRESETS, AXES, AccuracyPreset, Axis, Sett
 use marraztu_core::base::color::Color;
 use marraztu_core::base::math;
 use marraztu_core::scene::{
-    Aim, Attenuation, Light, LightKind, LightOrigin, Material, MaterialChoice, Orbit, PRESETS,
-    PresetId, Scene, SpotOwner, Tracked, View,
+    Aim, Attenuation, Light, LightKind, LightOrigin, Material, MaterialChoice, Optics, Orbit,
+    PRESETS, PresetId, Reflection, Scene, SpotOwner, Tracked, Transmission, View,
 };
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -51,6 +51,9 @@ pub(crate) enum MaterialValue {
         specular: [f64; 3],
         exponent: f64,
         emission: [f64; 3],
+        reflection: String,
+        transmission: [f64; 3],
+        index: f64,
     },
 }
 
@@ -66,19 +69,48 @@ impl MaterialValue {
                     Failure::Value(format!("there is no material {name:?}; write file, {names}"))
                 })
             }
-            Self::Values { ambient, diffuse, specular, exponent, emission } => {
-                let factors = [ambient, diffuse, specular].into_iter().flatten();
+            Self::Values {
+                ambient,
+                diffuse,
+                specular,
+                exponent,
+                emission,
+                reflection,
+                transmission,
+                index,
+            } => {
+                let factors = [ambient, diffuse, specular, transmission].into_iter().flatten();
                 let all_right = factors.into_iter().all(|x| (0.0..=1.0).contains(&x))
-                    && emission.into_iter().chain([exponent]).all(|x| x >= 0.0 && x.is_finite());
+                    && emission.into_iter().chain([exponent]).all(|x| x >= 0.0 && x.is_finite())
+                    && Optics::INDICES.contains(&index);
+                let optics = Optics {
+                    reflection: reflection_of(&reflection)?,
+                    transmission: match transmission {
+                        [0.0, 0.0, 0.0] => Transmission::None,
+                        filter => Transmission::Filter(filter),
+                    },
+                    index,
+                };
                 let plain = Material::matte(ambient, diffuse);
-                let material = Material { specular, exponent, emission, ..plain };
-                let reason = "ambient, diffuse and specular are factors from 0 to 1; exponent and \
-                              emission are at least 0";
+                let material = Material { specular, exponent, emission, optics, ..plain };
+                let reason = "ambient, diffuse, specular and transmission are factors from 0 to \
+                              1; exponent and emission are at least 0; an index of refraction is \
+                              from 0.1 to 10";
                 all_right
                     .then_some(MaterialChoice::Own(material))
                     .ok_or_else(|| Failure::value(reason))
             }
         }
+    }
+}
+
+/// Returns the kind of reflection with a name.
+fn reflection_of(name: &str) -> Result<Reflection, Failure> {
+    match name {
+        "none" => Ok(Reflection::None),
+        "constant" => Ok(Reflection::Constant),
+        "fresnel" => Ok(Reflection::Fresnel),
+        _ => Err(Failure::Value(format!("reflection is none, constant or fresnel, not {name:?}"))),
     }
 }
 
@@ -109,6 +141,7 @@ pub(crate) struct LightValue {
     name: String,
     color: [u8; 3],
     shadows: bool,
+    size: f64,
     position: Option<[f64; 3]>,
     direction: Option<[f64; 3]>,
     angle: f64,
@@ -156,8 +189,13 @@ impl LightValue {
             ));
         }
         let light = Light::new(&self.name, slot, kind);
+        let size = if self.kind == "sun" { self.size.to_degrees() } else { self.size };
+        if !(0.0..=light.largest_size()).contains(&size) {
+            return Err(invalid("a size is at least 0, and at most pi / 2 for a sun"));
+        }
         let color = Color(self.color);
-        Ok(Light { color, attenuation, shadows: self.shadows && light.can_cast_shadows(), ..light })
+        let shadows = self.shadows && light.can_cast_shadows();
+        Ok(Light { color, attenuation, shadows, size, ..light })
     }
 
     /// Describes a light of a scene. Spots of objects are fixed at their current place.
@@ -178,6 +216,10 @@ impl LightValue {
             name: light.name.clone(),
             color: light.color.0,
             shadows: light.shadows,
+            size: match light.kind {
+                LightKind::Sun { .. } => light.size.to_radians(),
+                _ => light.size,
+            },
             position: position.map(|v| v.to_array()),
             direction: direction.map(|v| v.to_array()),
             angle,

@@ -122,14 +122,14 @@ pub(crate) fn found(clock: &mut FakeClock, source: &mut FakeSource) -> Findings 
     bench.run(candidates, &mut |_| {}).unwrap()
 }
 
-/// The first scene with shadows, a ball with bumps, and a stretched, transparent, textured and
+/// The first scene with soft shadows, a ball with bumps, and a stretched, transparent, textured and
 /// mirroring triangle with an exponent of 32.
 fn textured_scene() -> (marraztu_core::scene::Scene, marraztu_core::scene::View) {
     use marraztu_core::base::Shared;
     use marraztu_core::scene::*;
     let (mut scene, view) = io::default_scene();
     let cast = |(id, light): (LightId, &Light)| {
-        (id, Light { shadows: light.can_cast_shadows(), ..light.clone() })
+        (id, Light { shadows: light.can_cast_shadows(), size: 2.0, ..light.clone() })
     };
     scene.lights = scene.lights.iter().map(cast).collect::<Vec<_>>().into_iter().collect();
     let text = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";

@@ -67,6 +67,7 @@ const TEXTS: &[&str] = &[
     include_str!("../../../assets/lessons/depth.ron"),
     include_str!("../../../assets/lessons/transparency.ron"),
     include_str!("../../../assets/lessons/shadow-method.ron"),
+    include_str!("../../../assets/lessons/light-samples.ron"),
     include_str!("../../../assets/lessons/bounces.ron"),
     include_str!("../../../assets/lessons/samples.ron"),
     include_str!("../../../assets/lessons/resolution.ron"),
@@ -117,6 +118,7 @@ const LESSONS: &[(&str, &str)] = &[
     ("plate", include_str!("../../../assets/lessons/plate.marraztu")),
     ("pressed", include_str!("../../../assets/lessons/pressed.marraztu")),
     ("shadow", include_str!("../../../assets/lessons/shadow.marraztu")),
+    ("soft", include_str!("../../../assets/lessons/soft.marraztu")),
     ("telescope", include_str!("../../../assets/lessons/telescope.marraztu")),
     ("wheel", include_str!("../../../assets/lessons/wheel.marraztu")),
 ];

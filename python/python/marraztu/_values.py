@@ -52,6 +52,9 @@ def material_of(material: Any) -> Material | str | None:
         specular=triple_of(material.specular, "specular"),
         exponent=float(material.exponent),
         emission=triple_of(material.emission, "emission"),
+        reflection=str(material.reflection),
+        transmission=triple_of(material.transmission, "transmission"),
+        index=float(material.index),
     )
 
 
@@ -80,6 +83,12 @@ class Material(NamedTuple):
     """The exponent of the highlight: Ns, at least 0."""
     emission: Triple = (0.0, 0.0, 0.0)
     """The emitted light: Ke, at least 0."""
+    reflection: str = "none"
+    """How the surroundings are mirrored: none, constant (Ks) or fresnel."""
+    transmission: Triple = (0.0, 0.0, 0.0)
+    """The fraction of light that passes through the surface: Tf."""
+    index: float = 1.0
+    """The index of refraction: Ni, from 0.1 to 10."""
 
     @classmethod
     def named(cls, name: str) -> Material:
@@ -104,6 +113,9 @@ class Light(NamedTuple):
     color: tuple[int, int, int] = (255, 255, 255)
     shadows: bool = False
     """Whether objects cast shadows in this light."""
+    size: float = 0.0
+    """With shadows, the extent of the light, which makes them soft: the radius of a bulb or spot, or
+    the angular diameter of a sun in radians."""
     position: Triple | None = None
     direction: Triple | None = None
     """The direction in which the light travels."""
@@ -126,11 +138,11 @@ class Light(NamedTuple):
         color: Sequence[int] | str = (255, 255, 255),
         *,
         shadows: bool = False,
+        size: float = 0.0,
     ) -> Light:
         """Light from infinitely far away. `direction` is the direction in which it travels."""
-        return cls(
-            "sun", "sun", bytes_of(color), shadows, direction=triple_of(direction, "direction")
-        )
+        towards = triple_of(direction, "direction")
+        return cls("sun", "sun", bytes_of(color), shadows, float(size), direction=towards)
 
     @classmethod
     def bulb(
@@ -140,6 +152,7 @@ class Light(NamedTuple):
         *,
         attenuation: Sequence[float] = (1.0, 0.0, 0.0),
         shadows: bool = False,
+        size: float = 0.0,
     ) -> Light:
         """Light from a point in all directions."""
         return cls(
@@ -147,6 +160,7 @@ class Light(NamedTuple):
             "bulb",
             bytes_of(color),
             shadows,
+            float(size),
             position=triple_of(position, "position"),
             attenuation=triple_of(attenuation, "attenuation"),
         )
@@ -162,6 +176,7 @@ class Light(NamedTuple):
         exponent: float = 5.0,
         attenuation: Sequence[float] = (1.0, 0.0, 0.0),
         shadows: bool = False,
+        size: float = 0.0,
     ) -> Light:
         """Light from a point within a cone. Without position and direction, the camera holds it."""
         return cls(
@@ -169,6 +184,7 @@ class Light(NamedTuple):
             "spot",
             bytes_of(color),
             shadows,
+            float(size),
             position=None if position is None else triple_of(position, "position"),
             direction=None if direction is None else triple_of(direction, "direction"),
             angle=angle,

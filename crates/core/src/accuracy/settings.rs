@@ -32,6 +32,8 @@ pub struct Settings {
     #[serde(rename = "shadow-method")]
     pub shadow_method: ShadowMethod,
     pub terminator: Terminator,
+    #[serde(rename = "light-samples")]
+    pub light_samples: LightSamples,
     pub bounces: Bounces,
     #[serde(rename = "values")]
     pub light_values: LightValues,
@@ -392,5 +394,48 @@ impl TryFrom<u16> for Bounces {
     fn try_from(count: u16) -> Result<Self, String> {
         let found = Self::ALL.into_iter().find(|bounces| u16::from(*bounces) == count);
         found.ok_or_else(|| format!("a ray bounces 0, 1, 2, 4 or 8 times, not {count}"))
+    }
+}
+
+/// The samples of a light with an extent at each point that it lights, written as a number.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(into = "u16", try_from = "u16")]
+pub enum LightSamples {
+    /// One, at its centre: shadows are hard.
+    One = 1,
+    /// Four.
+    Four = 4,
+    /// Sixteen.
+    #[default]
+    Sixteen = 16,
+    /// Sixty-four.
+    SixtyFour = 64,
+    /// Two hundred and fifty-six.
+    TwoFiftySix = 256,
+}
+
+impl LightSamples {
+    /// All of them, from one to the most.
+    pub const ALL: [Self; 5] =
+        [Self::One, Self::Four, Self::Sixteen, Self::SixtyFour, Self::TwoFiftySix];
+
+    /// The number of samples.
+    pub const fn count(self) -> u32 {
+        self as u32
+    }
+}
+
+impl From<LightSamples> for u16 {
+    fn from(samples: LightSamples) -> Self {
+        samples as Self
+    }
+}
+
+impl TryFrom<u16> for LightSamples {
+    type Error = String;
+
+    fn try_from(count: u16) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|samples| u16::from(*samples) == count);
+        found.ok_or_else(|| format!("a light has 1, 4, 16, 64 or 256 samples, not {count}"))
     }
 }

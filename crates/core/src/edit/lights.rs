@@ -203,6 +203,19 @@ pub fn set_shadows(scene: &Scene, id: LightId, to: bool) -> Change {
     change_light(scene, id, |light| light.shadows = to)
 }
 
+/// Sets the size of a light, within the sizes that its kind allows.
+///
+/// # Errors
+/// If the light is ambient, or gone.
+pub fn set_size(scene: &Scene, id: LightId, to: f64) -> Change {
+    let light = scene.lights.get(id).ok_or(Refusal::Gone)?;
+    if !light.can_cast_shadows() {
+        return Err(Refusal::NoShadows);
+    }
+    let size = if to.is_nan() { 0.0 } else { to.clamp(0.0, light.largest_size()) };
+    change_light(scene, id, |light| light.size = size)
+}
+
 /// Switches the shadows of the selected light on or off.
 ///
 /// # Errors

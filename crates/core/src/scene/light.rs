@@ -21,6 +21,10 @@ pub struct Light {
     pub attenuation: Attenuation,
     /// Whether objects cast shadows in this light; ambient light casts no shadows.
     pub shadows: bool,
+    /// The extent of a light that casts shadows, which makes their borders soft: the radius of a
+    /// bulb or spot in units of the world, or the angular diameter of a sun in degrees. At least 0;
+    /// 0 is a point.
+    pub size: f64,
     /// The kind of light, with its parameters.
     pub kind: LightKind,
 }
@@ -57,6 +61,20 @@ impl Light {
         !matches!(self.kind.anchor(), Anchor::Everywhere)
     }
 
+    /// Returns the largest valid size.
+    pub const fn largest_size(&self) -> f64 {
+        match self.kind {
+            LightKind::Ambient => 0.0,
+            LightKind::Sun { .. } => 90.0,
+            LightKind::Bulb { .. } | LightKind::Spot { .. } => f64::MAX,
+        }
+    }
+
+    /// Returns whether the light casts soft shadows.
+    pub fn is_soft(&self) -> bool {
+        self.shadows && self.can_cast_shadows() && self.size > 0.0
+    }
+
     /// Creates a white light that is on.
     pub fn new(name: &str, slot: u32, kind: LightKind) -> Self {
         Self {
@@ -66,6 +84,7 @@ impl Light {
             color: Color::WHITE,
             attenuation: Attenuation::default(),
             shadows: false,
+            size: 0.0,
             kind,
         }
     }

@@ -24,6 +24,8 @@ pub(super) struct FileLight {
     pub(super) attenuation: Attenuation,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub(super) shadows: bool,
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub(super) size: f64,
     pub(super) kind: FileLightKind,
 }
 
@@ -54,6 +56,10 @@ pub(super) enum FileOwner {
     Fixed { position: [f64; 3], direction: [f64; 3] },
 }
 
+fn is_zero(size: &f64) -> bool {
+    *size == 0.0
+}
+
 pub(super) fn file_light(id: u32, light: &Light) -> FileLight {
     let kind = match &light.kind {
         LightKind::Ambient => FileLightKind::Ambient,
@@ -70,8 +76,8 @@ pub(super) fn file_light(id: u32, light: &Light) -> FileLight {
         },
     };
     let (name, Color(color)) = (light.name.clone(), light.color);
-    let Light { slot, on, attenuation, shadows, .. } = *light;
-    FileLight { id, name, slot, on, color, attenuation, shadows, kind }
+    let Light { slot, on, attenuation, shadows, size, .. } = *light;
+    FileLight { id, name, slot, on, color, attenuation, shadows, size, kind }
 }
 
 pub(super) fn file_owner(owner: &SpotOwner) -> FileOwner {
@@ -111,15 +117,21 @@ pub(super) fn read_light(light: &FileLight) -> Result<Light, String> {
             LightKind::Spot { owner: read_owner(owner)?, half_aperture, exponent }
         }
     };
-    Ok(Light {
+    let read = Light {
         name: light.name.clone(),
         slot: light.slot,
         on: light.on,
         color: Color(light.color),
         attenuation: light.attenuation,
         shadows: light.shadows,
+        size: light.size,
         kind,
-    })
+    };
+    // Also false for NaN.
+    if !(0.0..=read.largest_size()).contains(&read.size) {
+        return Err("its size must be at least 0, and at most 90 degrees for a sun".into());
+    }
+    Ok(read)
 }
 
 pub(super) fn read_owner(owner: &FileOwner) -> Result<SpotOwner, String> {

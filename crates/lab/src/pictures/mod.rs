@@ -134,6 +134,9 @@ pub fn all() -> Vec<TestPicture> {
     ] {
         all.push(picture(name, &mirrors.scene, &mirrors.view, settings));
     }
+    let soft = io::lesson_scene("soft").expect("the program has it");
+    all.push(picture("soft shadows", &soft.scene, &soft.view, settings));
+    all.push(picture("soft shadows in f64", &soft.scene, &soft.view, exact));
     // One picture for each choice that differs from the default and is portable.
     let bent = bent(&textured);
     for (axis, choice) in AXES.iter().flat_map(|axis| axis.choices.iter().map(move |it| (axis, it)))
@@ -143,6 +146,7 @@ pub fn all() -> Vec<TestPicture> {
             let name = format!("{} {}", axis.key, choice.word);
             let (scene, view) = match axis.key {
                 "bounces" => (&mirrors.scene, &mirrors.view),
+                "light-samples" => (&soft.scene, &soft.view),
                 _ => (&bent, &view),
             };
             all.push(picture(&name, scene, view, rare));

@@ -118,6 +118,13 @@ pub const SUITE: &[SuiteScene] = &[
         make: scenes::shadows,
     },
     SuiteScene {
+        word: "soft",
+        what: "the same with a large sun, bulb and spot",
+        axes: &["light-samples"],
+        time_only: &[],
+        make: scenes::soft,
+    },
+    SuiteScene {
         word: "mirrors",
         what: "balls of glass and metal between two mirrors that face each other",
         axes: &["bounces"],

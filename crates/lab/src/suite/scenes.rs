@@ -320,6 +320,21 @@ pub(super) fn shadows(detail: u32) -> (Scene, View) {
     (scene, view)
 }
 
+/// Builds the same scene with lights that have an extent.
+pub(super) fn soft(detail: u32) -> (Scene, View) {
+    let (mut scene, view) = shadows(detail);
+    let lights = scene.lights.iter().map(|(id, light)| {
+        let size = match light.kind {
+            LightKind::Ambient => 0.0,
+            LightKind::Sun { .. } => 6.0,
+            LightKind::Bulb { .. } | LightKind::Spot { .. } => 15.0,
+        };
+        (id, Light { size, ..light.clone() })
+    });
+    scene.lights = lights.collect::<Vec<_>>().into_iter().collect();
+    (scene, view)
+}
+
 /// Builds balls of glass and metal on a floor, between two mirrors that face each other.
 pub(super) fn mirrors(detail: u32) -> (Scene, View) {
     let model = ball((detail / 25).clamp(8, 40));

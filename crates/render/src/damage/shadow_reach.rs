@@ -27,12 +27,14 @@ pub(super) fn is_by_pixel(plan: &FramePlan) -> bool {
         && plan.shift == [0; 2]
         && plan.variants.shadow_method.map().is_none()
         && plan.variants.terminator == Terminator::Triangles
+        && !plan.shadows.are_soft()
 }
 
 /// Returns whether the tiles of changed shadows can be determined: rays start at the pixels
 /// themselves, and no other quantity depends on all casters together.
 pub(super) fn is_known(before: &FramePlan, after: &FramePlan) -> bool {
     is_by_pixel(after)
+        && !before.shadows.are_soft()
         && before.shadows.are_cast() == after.shadows.are_cast()
         && Tracer::sun_distance(&before.shadows).to_bits()
             == Tracer::sun_distance(&after.shadows).to_bits()

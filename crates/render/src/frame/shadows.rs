@@ -17,6 +17,8 @@ use marraztu_core::scene::{Derived, ItemId, Model, Texture};
 pub(crate) struct Shadows {
     /// The end of the rays to each light of the plan, if it casts shadows.
     pub(crate) sources: Vec<Option<ShadowSource>>,
+    /// The radius of each light of the plan in the world, if it is a ball; 0 for points.
+    pub(crate) radii: Vec<f64>,
     /// The casters, the oldest first.
     pub(crate) casters: Vec<Caster>,
 }
@@ -130,6 +132,20 @@ impl Shadows {
         self.sources.get(light as usize).copied().flatten()
     }
 
+    /// Returns the radius of a light that casts soft shadows; 0 for others.
+    #[inline(always)]
+    pub(crate) fn radius(&self, light: u32) -> f64 {
+        match self.source(light) {
+            Some(_) => self.radii.get(light as usize).copied().unwrap_or(0.0),
+            None => 0.0,
+        }
+    }
+
+    /// Returns whether any light casts soft shadows.
+    pub(crate) fn are_soft(&self) -> bool {
+        self.are_cast() && (0_u32..).zip(&self.sources).any(|(light, _)| self.radius(light) > 0.0)
+    }
+
     /// Returns whether any of these lights casts shadows.
     pub(crate) fn any_of(&self, stages: &[Stage]) -> bool {
         self.are_cast() && stages.iter().any(|stage| self.source(stage.light).is_some())
@@ -139,11 +155,16 @@ impl Shadows {
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         // A light without shadows may come or go without changing any shadow.
         let cast = |source: &&Option<ShadowSource>| source.is_some();
+        let radii = |of: &Self| -> Vec<u64> {
+            let cast = (0_u32..).zip(&of.sources).filter(|(_, source)| source.is_some());
+            cast.map(|(light, _)| of.radius(light).to_bits()).collect()
+        };
         let own = self.sources.iter().filter(cast).flatten();
         let others = other.sources.iter().filter(cast).flatten();
         self.casters.len() == other.casters.len()
             && own.clone().count() == others.clone().count()
             && own.zip(others).all(|(a, b)| a.is_same(b))
+            && radii(self) == radii(other)
             && self.casters.iter().zip(&other.casters).all(|(a, b)| a.is_same(b))
     }
 

@@ -7,7 +7,7 @@
 use std::ops::Deref;
 
 use super::raster_mode::RasterMode;
-use marraztu_core::accuracy::{BumpFilter, Filter, LightValues, Settings, Subpixels};
+use marraztu_core::accuracy::{BumpFilter, Filter, LightSamples, LightValues, Settings, Subpixels};
 
 /// The conversion from the bytes of texels to numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,6 +53,11 @@ impl Variants {
             LightValues::Stored => Decoding::Stored,
             LightValues::Linear => Decoding::Linear,
         }
+    }
+
+    /// Returns whether lights with an extent have soft shadows.
+    pub(crate) fn have_soft_shadows(&self) -> bool {
+        self.light_samples != LightSamples::One && self.shadow_method.map().is_none()
     }
 
     /// Returns whether light is computed in linear values.

@@ -5,6 +5,8 @@
 //! an opacity below one half, excluded polygons, and the marks of cameras and bulbs. Light passes
 //! through holes of textures.
 
+use std::borrow::Cow;
+
 use glam::DMat3;
 
 use super::maps::holds_same_alpha;
@@ -73,13 +75,17 @@ impl Planner<'_> {
             return;
         }
         let is_mark = !matches!(ground.item, ItemId::Object(_));
-        let method = match into.plan.variants.shadow_method.map() {
-            None => "exact",
-            Some(form) if form.is_filtered => "shadow maps, 3 x 3 texels",
-            Some(_) => "shadow maps",
+        let samples = into.plan.variants.light_samples.count();
+        let method: Cow<'static, str> = match into.plan.variants.shadow_method.map() {
+            None if into.plan.shadows.radius(shining.light) > 0.0 => {
+                format!("soft, {samples} samples").into()
+            }
+            None => "exact".into(),
+            Some(form) if form.is_filtered => "shadow maps, 3 x 3 texels".into(),
+            Some(_) => "shadow maps".into(),
         };
         let reason = if is_mark { Some("markers receive no shadows") } else { no_light };
-        let state = reason.map_or(EffectState::On(method.into()), EffectState::left_out);
+        let state = reason.map_or(EffectState::On(method), EffectState::left_out);
         into.notes.add(|| note(shining, ground.thing(), state));
     }
 }

@@ -198,7 +198,10 @@ impl Planner<'_> {
             let region = ground.region.as_ref();
             let meeting = LitSurface { effect, light: &source, material, region, turning };
             let rules = &into.plan.rules;
-            let reason = rules.reflection(&meeting).or_else(|| rules.object(&meeting));
+            // A light with an extent reaches around corners that its centre does not.
+            let is_soft = into.plan.shadows.radius(*light) > 0.0;
+            let elsewhere = || if is_soft { None } else { rules.object(&meeting) };
+            let reason = rules.reflection(&meeting).or_else(elsewhere);
             into.notes.add(|| {
                 let state = reason.map_or(EffectState::ON, EffectState::left_out);
                 let named = EffectUse::new(Effect::Light(*id), ground.thing(), state);

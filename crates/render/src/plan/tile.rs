@@ -107,7 +107,10 @@ impl TilePlan {
         let material = &shaded.material;
         let light = |place: u32| &plan.lights[stages[place as usize].light as usize];
         let reaches = |place: &u32| {
-            let effect = stages[*place as usize].effect;
+            let Stage { effect, light: number, .. } = stages[*place as usize];
+            if plan.shadows.radius(number) > 0.0 {
+                return true;
+            }
             let (light, region, turning) = (light(*place), Some(region), None);
             plan.rules.tile(&LitSurface { effect, light, material, region, turning }).is_none()
         };
@@ -115,7 +118,8 @@ impl TilePlan {
         let count = u32::try_from(stages.len()).expect("fewer than 2^32 lights");
         self.kept.extend((0..count).filter(reaches));
         let kept = self.kept[from..].iter().map(|place| &stages[*place as usize]);
-        let needs_positions = plan.rules.positions(&Reading::of(kept)).is_none();
+        let needs_positions =
+            shaded.extras.rays.is_some() || plan.rules.positions(&Reading::of(kept)).is_none();
         Decided { from, to: self.kept.len(), needs_positions }
     }
 }

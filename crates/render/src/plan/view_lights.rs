@@ -41,11 +41,16 @@ pub(super) fn view_lights(
         // A light that is off or has no position is black, which lets it be computed, too.
         let shines = light.on && source.is_some();
         let source = source.unwrap_or_else(|| Source::new(&lights::SPOT));
+        let is_soft = shines && light.is_soft() && into.plan.variants.have_soft_shadows();
+        let Ball { source, attenuation, radius } = match is_soft {
+            true => ball(light, source, observer),
+            false => Ball { source, attenuation: light.attenuation, radius: 0.0 },
+        };
         let index = u32::try_from(into.plan.lights.len()).expect("fewer than 2^32 lights");
-        let (position, attenuation) =
-            within_reach(place_of(&source), &light.attenuation, observer.unit);
+        let (position, attenuation) = within_reach(place_of(&source), &attenuation, observer.unit);
         let turned = math::unit(observer.view_from_world.transform_vector3(source.direction));
         into.plan.shadows.sources.push(shadow_source(light, &source).filter(|_| shines));
+        into.plan.shadows.radii.push(radius);
         into.plan.light_ids.push(id);
         into.plan.lights.push(ViewLight {
             color: match (shines, linear) {
@@ -70,6 +75,34 @@ pub(super) fn view_lights(
     shining
 }
 
+/// A light with an extent, as a ball.
+struct Ball {
+    source: Source,
+    attenuation: Attenuation,
+    /// The radius in world space.
+    radius: f64,
+}
+
+/// The distance of a sun with an extent from the observer, in units of view space: over a view of
+/// about a thousand units, its direction changes by a millionth.
+const FAR_SUN: f64 = 1e9;
+
+/// Returns a light with an extent as a ball: a sun is a bulb far away that does not fade.
+fn ball(light: &Light, source: Source, observer: &ObserverSpace) -> Ball {
+    if light.kind.has_position() {
+        return Ball { source, attenuation: light.attenuation, radius: light.size };
+    }
+    let distance = FAR_SUN / observer.unit;
+    let eye = observer.world_from_view.w_axis.truncate();
+    let towards = math::unit(source.direction).map_or(DVec3::Y, |direction| -direction);
+    let attenuation = Attenuation { constant: 1.0, linear: 0.0, quadratic: 0.0 };
+    Ball {
+        source: Source { effect: &lights::BULB, position: eye + towards * distance, ..source },
+        attenuation,
+        radius: distance * libm::sin((light.size / 2.0).to_radians()),
+    }
+}
+
 /// Returns the factor of all light, and adds its row to the explanation.
 fn exposure(into: &mut Planning, view: &View) -> f64 {
     let factor = view.light_factor();
@@ -85,6 +118,7 @@ fn exposure(into: &mut Planning, view: &View) -> f64 {
 
 /// Returns the end of shadow rays, if the light casts shadows.
 fn shadow_source(light: &Light, source: &Source) -> Option<ShadowSource> {
+    let is_ball = std::ptr::eq(source.effect, &lights::BULB);
     let end = if light.kind.has_position() && light.kind.has_direction() {
         match math::unit(source.direction) {
             Some(direction) => ShadowSource::Cone {
@@ -95,7 +129,7 @@ fn shadow_source(light: &Light, source: &Source) -> Option<ShadowSource> {
             // Without a valid direction, shadows are planned all around the light.
             None => ShadowSource::Point(source.position),
         }
-    } else if light.kind.has_position() {
+    } else if light.kind.has_position() || is_ball {
         ShadowSource::Point(source.position)
     } else if light.kind.has_direction() {
         ShadowSource::Direction(-math::unit(source.direction)?)

@@ -52,6 +52,7 @@ mod runs;
 mod samples;
 mod shader;
 pub(crate) mod shadows;
+mod soft_shadows;
 pub(crate) mod surface;
 mod surface_maps;
 pub(crate) mod surroundings;

@@ -15,6 +15,7 @@ use glam::DVec3;
 
 use super::fragments::Fragments;
 use super::interpolated::ShadingNumber;
+use super::soft_shadows::add_soft_light;
 use super::triangle_attributes::TriangleAttributes;
 use crate::frame::draw::{Draw, Stage};
 use crate::lights::{Batch, LightTerm, Rows};
@@ -98,6 +99,11 @@ impl<'a> BatchShadows<'a> {
         let Some(light) = self.tracer.light(stage.light) else {
             return T::add_light(stage.variant(), level, batch, term);
         };
+        if let Some(soft) = self.tracer.soft(stage.light) {
+            self.place();
+            let Self { tracer, scratch, .. } = self;
+            return add_soft_light((tracer, soft), scratch, (stage, term), level, batch);
+        }
         let before = (first(&batch.diffuse), first(&batch.specular));
         T::add_light(stage.variant(), level, batch, term);
         // Positions that the light did not change need no ray.
@@ -144,14 +150,18 @@ impl<'a> BatchShadows<'a> {
 }
 
 /// The first numbers of three rows. Batches with shadows have no more.
-type Firsts<T> = [[T; POINTS]; 3];
+pub(super) type Firsts<T> = [[T; POINTS]; 3];
 
-fn first<T: Number>(rows: &Rows<T>) -> Firsts<T> {
+pub(super) fn first<T: Number>(rows: &Rows<T>) -> Firsts<T> {
     std::array::from_fn(|i| *rows[i].first_chunk().expect("a batch has room for more"))
 }
 
 /// Returns the positions of a batch with changed light, at most [`POINTS`], a bit for each.
-fn lit<T: Number>(level: Level, batch: &Batch<T>, before: &(Firsts<T>, Firsts<T>)) -> u64 {
+pub(super) fn lit<T: Number>(
+    level: Level,
+    batch: &Batch<T>,
+    before: &(Firsts<T>, Firsts<T>),
+) -> u64 {
     let mut changed = [0_u32; POINTS];
     let rows = batch.diffuse.iter().chain(&batch.specular);
     for (row, before) in rows.zip(before.0.iter().chain(&before.1)) {

@@ -24,12 +24,16 @@
 //!
 //! The results are cached from frame to frame ([`known`]).
 //!
+//! Lights with an extent are balls ([`ball_light`]), sampled by a sequence of points ([`sequence`])
+//! that differs from point to point. Their rays have no end in common, and are traced one by one.
+//!
 //! If the settings ask for shadow maps ([`maps`]), these are read at the same points instead of
 //! tracing rays.
 //!
 //! Shewchuk, "Adaptive Precision Floating-Point Arithmetic and Fast Robust Geometric Predicates",
 //! 1997. Amanatides and Choi, "Ray Tracing Triangular Meshes", 1995, for edges seen from one point.
 
+pub(crate) mod ball_light;
 pub(crate) mod boxes;
 pub(crate) mod known;
 mod map_bias;
@@ -39,6 +43,7 @@ pub(crate) mod maps;
 pub(crate) mod patches;
 pub(crate) mod prepared_block;
 pub(crate) mod rays;
+mod sequence;
 pub(crate) mod shaft;
 pub(crate) mod tracer;
 pub(crate) mod triangle;

@@ -6,6 +6,7 @@ use super::patches::{Patch, find_patches};
 use super::prepared_block::PreparedBlock;
 use super::shaft::{POINTS, Shaft};
 use crate::accel::BvhChild;
+use crate::rays::RayStack;
 
 /// The origins of up to [`POINTS`] rays, in world space, all on one object.
 #[derive(Debug)]
@@ -127,6 +128,8 @@ pub(crate) struct RayScratch {
     pub(super) prepared: PreparedBlock,
     /// Nodes and leaves that are still to be visited, with the rays that reach them.
     pub(super) stack: Vec<(BvhChild, u64)>,
+    /// The same for single rays.
+    pub(super) single: RayStack,
 }
 
 /// The rays of a packet in the space of one caster, for ray-box intersection.

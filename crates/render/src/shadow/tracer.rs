@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 
 use crate::accel::Accelerated as _;
 use fearless_simd::{Level, Simd};
-use glam::{DMat4, DVec3};
+use glam::{DMat3, DMat4, DVec3};
 
+use super::ball_light::{BallLight, LightSample};
 use super::boxes::world_pad;
 use super::known::{KnownLight, KnownShadows};
 use super::map_face::LightMap;
@@ -13,12 +14,13 @@ use super::maps::ShadowMaps;
 use super::patches::Patch;
 use super::prepared_block::PreparedBlock;
 use super::rays::{Origins, RayCount, RayScratch};
-use super::shaft::{Around, Shaft};
+use super::sequence::{sample as sequence_sample, seed_of};
+use super::shaft::{Around, POINTS, Shaft};
 use super::triangle::{Prepared, is_between, reaches_behind};
 use crate::accel::{BVH_BLOCK, Bvh, BvhBlock, BvhChild, BvhNode};
 use crate::frame::FramePlan;
 use crate::frame::shadows::{Caster, Holes, ShadowSource, Shadows};
-use crate::rays::{Corners, FLAT};
+use crate::rays::{Corners, FLAT, Hit, OwnTriangles, Ray, Thing, Things};
 use crate::simd::{Bits, dispatch};
 use crate::texture::sample::{opacity_of, sample};
 use crate::texture::uv::uv;
@@ -47,6 +49,21 @@ pub(crate) struct Tracer<'a> {
     /// The cached shadows, if shadows are cached.
     known: Option<&'a KnownShadows>,
     filter: Filter,
+    /// The casters for single rays, if any light has an extent.
+    things: Things<'a>,
+    /// Each light, if it has an extent.
+    soft: Vec<Option<SoftLight>>,
+    view_from_world: DMat3,
+}
+
+/// A light with an extent.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SoftLight {
+    ball: BallLight,
+    /// The number of the light.
+    light: u32,
+    /// The number of samples at each point.
+    pub(crate) samples: u32,
 }
 
 /// A caster with its transforms and bounds.
@@ -88,7 +105,8 @@ impl<'a> Tracer<'a> {
         let of_items: BTreeMap<_, _> =
             numbered.map(|(index, placed)| (placed.caster.item, index)).collect();
         let of_draws = plan.draws.iter().map(|draw| of_items.get(&draw.item).copied()).collect();
-        Some(Self { of_draws, ..tracer })
+        let tracer = Self { of_draws, ..tracer };
+        Some(if plan.shadows.are_soft() { tracer.with_extents(plan) } else { tracer })
     }
 
     /// Returns the distance of the suns of a frame.
@@ -112,7 +130,94 @@ impl<'a> Tracer<'a> {
             }
         };
         let lights = shadows.sources.iter().map(|source| source.as_ref().map(end)).collect();
-        Self { casters, reach, of_draws: Vec::new(), lights, maps: Vec::new(), known: None, filter }
+        Self {
+            casters,
+            reach,
+            of_draws: Vec::new(),
+            lights,
+            maps: Vec::new(),
+            known: None,
+            filter,
+            things: Things::default(),
+            soft: Vec::new(),
+            view_from_world: DMat3::IDENTITY,
+        }
+    }
+
+    /// Prepares the lights with an extent.
+    fn with_extents(mut self, plan: &FramePlan) -> Self {
+        let things = self.casters.iter().map(|placed| {
+            let caster = placed.caster;
+            let mut thing = Thing::new(&caster.model.mesh, caster.world_from_object)?;
+            thing.is_solid = placed.is_solid;
+            Some(thing)
+        });
+        // Without a tree for each caster, lights are points.
+        let Some(things) = things.collect::<Option<Vec<_>>>() else { return self };
+        self.things = Things::new(things);
+        self.view_from_world = DMat3::from_mat4(plan.view_from_world);
+        let samples = plan.variants.light_samples.count();
+        let numbered = (0_u32..).zip(&self.lights);
+        self.soft = numbered
+            .map(|(light, centre)| {
+                let radius = plan.shadows.radius(light);
+                let centre = centre.filter(|_| radius > 0.0)?;
+                Some(SoftLight { ball: BallLight { centre, radius }, light, samples })
+            })
+            .collect();
+        self
+    }
+
+    /// Returns a light, if it has an extent.
+    #[inline(always)]
+    pub(crate) fn soft(&self, light: u32) -> Option<SoftLight> {
+        self.soft.get(light as usize).copied().flatten()
+    }
+
+    /// Returns a sample of a light at a point.
+    pub(crate) fn light_sample(
+        &self,
+        light: &SoftLight,
+        point: DVec3,
+        number: u32,
+    ) -> Option<LightSample> {
+        light.ball.sample(point, sequence_sample(number, seed_of(point, light.light)))
+    }
+
+    /// Transforms a vector to view space.
+    pub(crate) fn to_view(&self, vector: DVec3) -> DVec3 {
+        self.view_from_world * vector
+    }
+
+    /// Traces rays of a mask to their samples of a light. Returns a bit mask of the blocked ones.
+    pub(crate) fn blocked(
+        &self,
+        level: Level,
+        scratch: &mut RayScratch,
+        samples: &[Option<LightSample>; POINTS],
+        mask: u64,
+    ) -> u64 {
+        let RayScratch { origins, single, .. } = scratch;
+        let stops = |hit: &Hit| {
+            let placed = &self.casters[hit.thing as usize];
+            self.is_solid_at(placed, hit.triangle, hit.weights)
+        };
+        let mut blocked = 0;
+        dispatch!(level, simd => for i in Bits(mask) {
+            let Some(LightSample { towards, distance, .. }) = samples[i] else { continue };
+            let own = origins.caster.map(|thing| OwnTriangles {
+                thing,
+                first: origins.first[i],
+                end: origins.end[i],
+                is_rounded: origins.in_triangle && origins.lifted >> i & 1 == 0,
+            });
+            let ray = Ray { from: origins.point(i), towards, own };
+            let is_blocked = self.things.stop(simd, (&ray, distance), &stops, single);
+            blocked |= u64::from(is_blocked) << i;
+        });
+        let [traced, occluded] = [mask, blocked].map(|rays| u64::from(rays.count_ones()));
+        scratch.count += RayCount { traced, occluded, bounced: 0 };
+        blocked
     }
 
     /// Returns the end point of the rays to a light, if it casts shadows.

@@ -105,6 +105,21 @@ impl Shown<'_> {
         self.change(requests, verb, gesture, |scene, _, id| items::change_light(scene, id, &to));
     }
 
+    /// Shows the extent of a light with shadows.
+    fn size_ui(&self, ui: &mut Ui, requests: &mut Requests) {
+        let light = self.light;
+        let (label, hint) = match light.kind.has_position() {
+            true => ("Radius", "The radius of the light: larger lights have softer shadows"),
+            false => ("Angle", "The angular diameter of the sun in degrees; 0.53 from the Earth"),
+        };
+        let number = Number::new(label, hint).speed(0.05).range(0.0..=light.largest_size());
+        if let Some((size, gesture)) = number_row(ui, label, number, light.size) {
+            self.change(requests, "Size of", gesture, |scene, _, id| {
+                lights::set_size(scene, id, size)
+            });
+        }
+    }
+
     fn color_ui(&self, ui: &mut Ui, requests: &mut Requests) {
         let Self { state, others: _, id, light } = *self;
         if Switch::new("Shines", light.on).ui(ui).on_hover_text(self.key_hint()).clicked() {
@@ -117,6 +132,9 @@ impl Shown<'_> {
                 self.change(requests, "Shadows of", Gesture::Whole, |scene, _, id| {
                     lights::set_shadows(scene, id, !light.shadows)
                 });
+            }
+            if light.shadows {
+                self.size_ui(ui, requests);
             }
         }
         let channels = [("Red", "q and Q"), ("Green", "v and V"), ("Blue", "a and A")];

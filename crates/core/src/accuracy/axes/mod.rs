@@ -107,6 +107,7 @@ pub const AXES: &[Axis] = &[
     picture::DEPTH,
     transparency::TRANSPARENCY,
     shadows::SHADOW_METHOD,
+    shadows::LIGHT_SAMPLES,
     rays::BOUNCES,
     sampling::SAMPLES,
     sampling::RESOLUTION,

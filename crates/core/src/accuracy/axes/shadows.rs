@@ -1,7 +1,7 @@
 //! The axes of shadows: how shadows are computed, and where shadow rays start.
 
 use super::{Axis, AxisKind, Choice};
-use crate::accuracy::{ShadowMethod, Terminator};
+use crate::accuracy::{LightSamples, Settings, ShadowMethod, Terminator};
 use crate::scene::{Fill, Scene, View};
 
 /// Whether a light casts shadows in this view; else the reason.
@@ -45,6 +45,51 @@ pub(super) const SHADOW_METHOD: Axis = Axis {
             "none"),
     ],
     sense: are_cast,
+};
+
+/// Whether a light casts soft shadows in this view; else the reason.
+fn are_soft(scene: &Scene, view: &View) -> Result<(), &'static str> {
+    are_cast(scene, view)?;
+    let soft = |light: &crate::scene::Light| light.on && light.is_soft();
+    if scene.lights.iter().any(|(_, light)| soft(light)) {
+        Ok(())
+    } else {
+        Err("no light with shadows has an extent")
+    }
+}
+
+/// Whether rays decide shadows.
+fn by_rays(settings: &Settings) -> Result<(), &'static str> {
+    match settings.shadow_method.map() {
+        None => Ok(()),
+        Some(_) => Err("shadow maps have hard shadows"),
+    }
+}
+
+pub(super) const LIGHT_SAMPLES: Axis = Axis {
+    key: "light-samples",
+    label: "Light samples",
+    phrase: "{} samples per light",
+    what: "How many points of a large light each lit point sees",
+    kind: AxisKind::Scored,
+    choices: &[
+        choice!("1" "1" light_samples = LightSamples::One,
+            "Its centre: shadows are hard.",
+            "every soft border", |_, _| Ok(()), by_rays),
+        choice!("4" "4" light_samples = LightSamples::Four,
+            "Four points, others at each lit point.",
+            "coarse noise along soft borders", |_, _| Ok(()), by_rays),
+        choice!("16" "16" light_samples = LightSamples::Sixteen,
+            "Sixteen points, the first of which are those four.",
+            "fine noise along soft borders", |_, _| Ok(()), by_rays),
+        choice!("64" "64" light_samples = LightSamples::SixtyFour,
+            "Sixty-four points.",
+            "a few byte steps along soft borders", |_, _| Ok(()), by_rays),
+        choice!("256" "256" light_samples = LightSamples::TwoFiftySix,
+            "256 points.",
+            "about a byte step", |_, _| Ok(()), by_rays),
+    ],
+    sense: are_soft,
 };
 
 pub(super) const TERMINATOR: Axis = Axis {

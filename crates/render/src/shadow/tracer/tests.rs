@@ -48,6 +48,7 @@ fn shadows_of(casters: &[(Vec<[Point; 3]>, Point)], light: Point) -> Shadows {
         polygons: None,
     };
     Shadows {
+        radii: Vec::new(),
         sources: vec![Some(ShadowSource::Point(float(light)))],
         casters: casters.iter().enumerate().map(caster).collect(),
     }
