@@ -13,6 +13,7 @@ use std::process::{Command, Output, Stdio};
 use marraztu_core::accuracy::AXES;
 use marraztu_io as io;
 use marraztu_lab::suite::SUITE;
+use serde_json::Value as Json;
 use tempfile::TempDir;
 
 /// Pages for users and contributors.
@@ -27,6 +28,7 @@ const PAGES: &[&str] = &[
     "docs/engines.md",
     "docs/glossary.md",
     "docs/install.md",
+    "docs/json.md",
     "docs/keys.md",
     "docs/many.md",
     "docs/python.md",
@@ -180,6 +182,62 @@ fn every_command_of_the_program_on_a_page_runs_in_a_plain_clone() {
         }
     }
     assert!(run >= 10, "only {run} commands were found");
+}
+
+/// Checks that a JSON value has everything that an example shows; arrays of an example may be
+/// shorter.
+#[track_caller]
+fn shows(example: &Json, real: &Json) {
+    match (example, real) {
+        (Json::Object(example), Json::Object(real)) => {
+            let keys = |object: &serde_json::Map<String, Json>| {
+                object.keys().cloned().collect::<BTreeSet<String>>()
+            };
+            assert_eq!(keys(example), keys(real));
+            example.iter().for_each(|(key, value)| shows(value, &real[key]));
+        }
+        (Json::Array(example), Json::Array(real)) => {
+            assert!(example.len() <= real.len() && example.is_empty() == real.is_empty());
+            example.iter().zip(real).for_each(|(example, real)| shows(example, real));
+        }
+        _ => assert_eq!(example, real),
+    }
+}
+
+/// Adds the keys of all objects in a JSON value.
+fn add_keys(value: &Json, keys: &mut BTreeSet<String>) {
+    match value {
+        Json::Object(object) => object.iter().for_each(|(key, value)| {
+            keys.insert(key.clone());
+            add_keys(value, keys);
+        }),
+        Json::Array(items) => items.iter().for_each(|item| add_keys(item, keys)),
+        _ => {}
+    }
+}
+
+#[test]
+fn the_page_of_json_shows_the_output_of_its_commands_and_describes_every_key() {
+    let text = page("docs/json.md");
+    let folder = clone();
+    let (mut examples, mut keys) = (0, BTreeSet::new());
+    // Each example follows its command.
+    for part in text.split("```sh\n").skip(1) {
+        let (command, rest) = part.split_once("\n```").unwrap();
+        let output = shell(folder.path(), command);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let real: Json = serde_json::from_slice(&output.stdout).unwrap();
+        let (_, example) = rest.split_once("```json\n").unwrap();
+        let (example, _) = example.split_once("```").unwrap();
+        shows(&serde_json::from_str(example).unwrap(), &real);
+        add_keys(&real, &mut keys);
+        examples += 1;
+    }
+    let tables: Vec<&str> = text.lines().filter(|line| line.starts_with('|')).collect();
+    let described = |key: &String| tables.iter().any(|row| row.contains(&format!("`{key}`")));
+    let missing: Vec<&String> = keys.iter().filter(|key| !described(key)).collect();
+    assert!(missing.is_empty(), "docs/json.md does not describe {missing:?}");
+    assert_eq!(examples, 1);
 }
 
 #[test]

@@ -65,7 +65,7 @@ pub(crate) enum Headless {
     /// Join the reports of the parts of a batch
     #[cfg(not(target_family = "wasm"))]
     Merge(super::merge::Merge),
-    /// Compare two pictures
+    /// Compare two pictures, or the pictures of two folders
     #[cfg(not(target_family = "wasm"))]
     Compare(super::compare::Compare),
     /// Draw standard views of a model into one picture, with its facts

@@ -287,7 +287,7 @@ fn grouped(count: usize) -> String {
 }
 
 /// Formats a number with at most six significant digits.
-fn short(x: f64) -> String {
+pub fn short(x: f64) -> String {
     if x == 0.0 {
         return "0".to_owned();
     }

@@ -35,6 +35,7 @@ mod loaded;
 mod locate;
 mod mark;
 mod mtl;
+mod numbers;
 mod obj;
 mod packed;
 mod part;
@@ -54,7 +55,7 @@ mod window_state;
 pub use animation::{Animation, AnimationFormat, AnimationWriter};
 pub use assets::{cam_model, default_scene, empty_scene, own_model, own_texture};
 pub use companions::{Companion, companions};
-pub use describe::{describe, describe_model};
+pub use describe::{describe, describe_model, short as short_number};
 pub use error::LoadError;
 pub use examples::{EXAMPLES, Example, check_file, is_example};
 pub use export::{EXPORT_ENDINGS, ExportOptions, Exported, check_export_target, export};
@@ -72,6 +73,7 @@ pub use layers::{
 pub use lessons::{Lesson, lesson_on, lesson_scene, lessons};
 pub use load::{load, parse};
 pub use loaded::Loaded;
+pub use numbers::{Numbers, PictureContent, load_content};
 pub use part::sweep_once;
 pub use picture::{
     NextBand, PICTURE_FORMATS, PictureFormat, check_alpha, check_layer_target,
@@ -89,8 +91,7 @@ pub use spool::Spool;
 pub use stamp::{encode_stamped, read_stamp, stamped_at_end};
 pub use stl::usual_crease;
 pub use texture::{
-    load_deep_pixels, load_picture, load_texture, load_texture_with, texture_endings,
-    texture_formats,
+    load_picture, load_texture, load_texture_with, texture_endings, texture_formats,
 };
 pub use up_axis::{StatedUp, stated_up, usual_up};
 pub use window_state::{Panels, WindowState};

@@ -19,7 +19,7 @@ use marraztu_core::base::image::{Picture, Size};
 const JPEG_QUALITY: u8 = 92;
 
 /// The first bytes of an array of NumPy.
-const NUMPY: &[u8] = b"\x93NUMPY";
+pub(super) const NUMPY: &[u8] = b"\x93NUMPY";
 
 /// The number of bytes that identify the format of a picture.
 const SIGNATURE: u64 = 64;

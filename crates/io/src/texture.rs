@@ -16,7 +16,7 @@ use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::Texture;
 
 /// The largest side of a texture, in texels.
-const LARGEST_SIDE: u32 = 16_384;
+pub(super) const LARGEST_SIDE: u32 = 16_384;
 
 /// The most memory for decoding a picture.
 const MOST_MEMORY: u64 = 2 << 30;
@@ -77,22 +77,6 @@ pub fn load_texture_with(
 pub fn load_picture(path: &Path) -> Result<Picture, LoadError> {
     let (picture, _) = decode(path, usize::MAX)?;
     Ok(picture)
-}
-
-/// Loads the pixels of a picture of 16 bits per channel, row by row: red, green, blue and opacity.
-/// `None` if it has fewer bits.
-///
-/// # Errors
-/// If the file cannot be read, is not a picture, or is too large.
-pub fn load_deep_pixels(path: &Path) -> Result<Option<Vec<[u16; 4]>>, LoadError> {
-    let (decoded, _) = decode_any(path, usize::MAX)?;
-    if !matches!(
-        decoded.color(),
-        ColorType::L16 | ColorType::La16 | ColorType::Rgb16 | ColorType::Rgba16
-    ) {
-        return Ok(None);
-    }
-    Ok(Some(decoded.into_rgba16().into_raw().as_chunks().0.to_vec()))
 }
 
 /// The pictures of one model or scene: each file is decoded once and shared.
@@ -170,6 +154,26 @@ pub(super) fn decoded(path: &Path, content: &[u8]) -> Option<Picture> {
     let (decoded, cut_off) = decode_bytes(path, content, usize::MAX).ok()?;
     picture(decoded).filter(|_| !cut_off)
 }
+
+/// Decodes the content of a file to 8 bits per channel; with its pixels of 16 bits per channel, row
+/// by row, if it has those. Fails if it is not a picture, or too large.
+pub(super) fn decode_deep(
+    path: &Path,
+    content: &[u8],
+) -> Result<(Picture, Option<Deep>), LoadError> {
+    let (decoded, _) = decode_bytes(path, content, usize::MAX)?;
+    let is_deep = matches!(
+        decoded.color(),
+        ColorType::L16 | ColorType::La16 | ColorType::Rgb16 | ColorType::Rgba16
+    );
+    let deep = is_deep.then(|| decoded.to_rgba16().into_raw().as_chunks().0.to_vec());
+    let picture = picture(decoded).filter(|picture| picture.size().area() > 0);
+    let picture = picture.ok_or_else(|| LoadError::file(&shown(path), "the picture is damaged"))?;
+    Ok((picture, deep))
+}
+
+/// Pixels of 16 bits: red, green, blue and opacity.
+type Deep = Vec<[u16; 4]>;
 
 /// Works like [`decode`], for any number of bits.
 fn decode_any(path: &Path, most: usize) -> Result<(DynamicImage, bool), LoadError> {

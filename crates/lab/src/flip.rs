@@ -69,16 +69,15 @@ impl Perceived {
     /// If the sizes differ.
     pub fn difference(&self, other: &Self) -> f64 {
         assert_eq!(self.size, other.size, "pictures of one size are compared");
-        mean(&self.sums(other, 0..self.size.height), self.size)
+        mean(&self.sums(other, 0..self.size.height, &|_| true), self.size.area())
     }
 
-    /// Returns the sum of the differences in each of some rows. Summation by rows makes the result
-    /// independent of the number of threads.
-    fn sums(&self, other: &Self, rows: Range<usize>) -> Vec<f64> {
+    /// Returns the sum of the differences in each of some rows, at the pixels that count. Summation
+    /// by rows makes the result independent of the number of threads.
+    fn sums(&self, other: &Self, rows: Range<usize>, counts: &Counts<'_>) -> Vec<f64> {
         let (width, most) = (self.size.width, most_color_error());
-        rows.into_par_iter()
-            .map(|y| (y * width..(y + 1) * width).map(|i| self.at(other, i, most)).sum())
-            .collect()
+        let row = |y| (y * width..(y + 1) * width).filter(|i| counts(*i));
+        rows.into_par_iter().map(|y| row(y).map(|i| self.at(other, i, most)).sum()).collect()
     }
 
     fn at(&self, other: &Self, i: usize, most: f64) -> f64 {
@@ -96,6 +95,14 @@ impl Perceived {
 /// # Panics
 /// If the sizes differ.
 pub fn difference(a: &Picture, b: &Picture) -> f64 {
+    difference_within(a, b, None)
+}
+
+/// Works like [`difference`], for the mean over the pixels of a mask, row by row from the top.
+///
+/// # Panics
+/// If the sizes differ, or the mask has fewer pixels.
+pub fn difference_within(a: &Picture, b: &Picture, mask: Option<&[bool]>) -> f64 {
     let size = a.size();
     assert_eq!(size, b.size(), "pictures of one size are compared");
     let mut sums = Vec::with_capacity(size.height);
@@ -107,14 +114,19 @@ pub fn difference(a: &Picture, b: &Picture) -> f64 {
             let band = Picture::from_pixels(Size::new(size.width, to - from), pixels);
             Perceived::new(&band.expect("whole rows"))
         });
-        sums.extend(a.sums(&b, top - from..bottom - from));
+        let counts = |i: usize| mask.is_none_or(|mask| mask[from * size.width + i]);
+        sums.extend(a.sums(&b, top - from..bottom - from, &counts));
     }
-    mean(&sums, size)
+    let count = mask.map_or(size.area(), |mask| mask.iter().filter(|counts| **counts).count());
+    mean(&sums, count)
 }
 
+/// Returns whether a pixel counts, by its number.
+type Counts<'a> = dyn Fn(usize) -> bool + Sync + 'a;
+
 #[expect(clippy::cast_precision_loss, reason = "pictures have fewer than 2^52 pixels")]
-fn mean(sums: &[f64], size: Size) -> f64 {
-    sums.iter().sum::<f64>() / size.area().max(1) as f64
+fn mean(sums: &[f64], count: usize) -> f64 {
+    sums.iter().sum::<f64>() / count.max(1) as f64
 }
 
 /// The rows that are filtered at a time.
@@ -344,6 +356,23 @@ mod tests {
             assert_eq!(difference(&a, &b).to_bits(), whole.to_bits(), "{height}");
             assert!(height == 0 || whole > 0.0);
         }
+    }
+
+    #[test]
+    fn the_difference_within_a_mask_is_the_mean_over_its_pixels() {
+        let size = Size::new(7, 2 * BAND + 3);
+        let pixels = (0..size.area()).map(|i| [u8::try_from(i % 256).unwrap(), 0, 0, 255]);
+        let a = Picture::from_pixels(size, pixels.collect()).unwrap();
+        let b = Picture::filled(size, [9, 9, 9, 255]);
+        let [mut upper, mut lower] = [vec![false; size.area()], vec![false; size.area()]];
+        let (above, below) = (7 * BAND, size.area() - 7 * BAND);
+        upper[..above].fill(true);
+        lower[above..].fill(true);
+        let [upper, lower] = [upper, lower].map(|mask| difference_within(&a, &b, Some(&mask)));
+        let whole = difference_within(&a, &b, Some(&vec![true; size.area()]));
+        assert_eq!(whole.to_bits(), difference(&a, &b).to_bits());
+        let joined = (upper * above as f64 + lower * below as f64) / size.area() as f64;
+        assert!(upper != lower && (joined - whole).abs() < 1e-12, "{upper} {lower} {whole}");
     }
 
     #[test]
