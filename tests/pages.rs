@@ -237,7 +237,7 @@ fn the_page_of_json_shows_the_output_of_its_commands_and_describes_every_key() {
     let described = |key: &String| tables.iter().any(|row| row.contains(&format!("`{key}`")));
     let missing: Vec<&String> = keys.iter().filter(|key| !described(key)).collect();
     assert!(missing.is_empty(), "docs/json.md does not describe {missing:?}");
-    assert_eq!(examples, 1);
+    assert_eq!(examples, 3);
 }
 
 #[test]

@@ -253,11 +253,15 @@ fn exposure(text: &str) -> Result<Exposure, String> {
 #[command(after_help = "\
 Examples:
   marraztu info teapot.obj
+  marraztu info teapot.obj --json
   marraztu info --up z parts/*.obj shelf.marraztu")]
 pub(crate) struct Info {
     /// Models (.obj, .stl, also .gz) and scenes (.marraztu); "-" is standard input
     #[arg(required = true)]
     pub(crate) files: Vec<PathBuf>,
+    /// Print a JSON object
+    #[arg(long)]
+    pub(crate) json: bool,
     #[command(flatten)]
     pub(crate) reading: Reading,
 }

@@ -1,102 +1,247 @@
-//! `marraztu info`: describes files as plain text.
+//! `marraztu info`: describes files as plain text or JSON.
 
 use std::fmt::Write as _;
 use std::path::Path;
 
-use marraztu_core::scene::{Model, Observer, Projection, Scene, Shape, View};
-use marraztu_io::{Input, Progress, describe};
+use marraztu_core::scene::{
+    Camera, Light, Model, Object, Observer, Projection, Scene, Shape, View,
+};
+use marraztu_io::{FindingFacts, Input, Loaded, ModelFacts, Progress, describe, with_slashes};
+use serde::Serialize;
 
 use super::arguments::{Info, Reading};
 use super::failure::Failure;
 use super::stage::{Stage, Watch, input, is_scene, load};
-use super::talk::{print, say};
+use super::talk::{json, print, say};
 use super::values::is_standard;
 
 /// Describes each file. An unreadable file is reported, and the rest are still described.
 pub(crate) fn info(arguments: &Info) -> Result<(), Failure> {
     let input = input(&arguments.files)?;
     let mut failed = false;
+    let mut objects = Vec::new();
     for (i, file) in arguments.files.iter().enumerate() {
-        let described = match description(file, input.as_ref(), &arguments.reading) {
-            Ok(described) => described,
+        match described(file, input.as_ref(), &arguments.reading) {
+            Ok(described) if arguments.json => objects.push(described.facts(file)),
+            Ok(described) => {
+                let blank = if i == 0 { "" } else { "\n" };
+                print(&format!("{blank}{}", described.text(file)))?;
+            }
             Err(failure) => {
                 say("error", &failure);
                 failed = true;
-                continue;
+                let (file, error) = (with_slashes(file), failure.to_string());
+                objects.push(FileFacts::Unreadable { file, error });
             }
-        };
-        let blank = if i == 0 { "" } else { "\n" };
-        print(&format!("{blank}{described}"))?;
+        }
+    }
+    if arguments.json {
+        print(&json(&AllFacts { files: objects }))?;
     }
     if failed { Err(Failure::Told) } else { Ok(()) }
 }
 
-fn description(file: &Path, input: Option<&Input>, reading: &Reading) -> Result<String, Failure> {
-    let input = input.filter(|_| is_standard(file));
-    if !input.map_or_else(|| is_scene(file), Input::is_scene) {
-        let options = reading.options(file, input);
-        let loaded = match input {
-            Some(input) => input.model(&options, &Progress::new())?,
-            None => load(file, &options)?,
-        };
-        return Ok(describe(&loaded));
-    }
-    let stage = Stage::of_scene(file, input, Watch::Bar)?;
-    let mut text = scene_text(file, &stage.scene, &stage.view);
-    for finding in &stage.findings {
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "  {finding}");
-    }
-    Ok(text)
+/// The content of a file.
+enum Described {
+    Model(Box<Loaded>),
+    Scene(Box<Stage>),
 }
 
-/// Describes the shape of an object: "a cube, 8 vertices, 6 faces".
-fn model_text(model: &Model) -> String {
-    if let (true, Some(file)) = (model.is_placeholder(), &model.source) {
-        return format!("a box in place of the missing file {}", file.display());
+/// The facts about a file.
+#[derive(Serialize)]
+#[serde(tag = "kind", rename_all = "snake_case")]
+enum FileFacts {
+    Model(Box<ModelFacts>),
+    Scene(SceneFacts),
+    Unreadable { file: String, error: String },
+}
+
+/// The facts about several files, as JSON.
+#[derive(Serialize)]
+struct AllFacts {
+    files: Vec<FileFacts>,
+}
+
+fn described(file: &Path, input: Option<&Input>, reading: &Reading) -> Result<Described, Failure> {
+    let input = input.filter(|_| is_standard(file));
+    if input.map_or_else(|| is_scene(file), Input::is_scene) {
+        return Ok(Described::Scene(Box::new(Stage::of_scene(file, input, Watch::Bar)?)));
     }
-    let kind = Shape::of(model).map_or_else(String::new, |shape| format!("a {}, ", shape.name()));
-    let (vertices, faces) = (model.mesh.positions().len(), model.mesh.polygon_count());
-    format!("{kind}{vertices} vertices, {faces} faces")
+    let options = reading.options(file, input);
+    Ok(Described::Model(Box::new(match input {
+        Some(input) => input.model(&options, &Progress::new())?,
+        None => load(file, &options)?,
+    })))
+}
+
+impl Described {
+    fn text(&self, file: &Path) -> String {
+        match self {
+            Self::Model(loaded) => describe(loaded),
+            Self::Scene(stage) => {
+                let mut text = scene_text(file, &stage.scene, &stage.view);
+                for finding in &stage.findings {
+                    // Writing to a string cannot fail.
+                    let _ = writeln!(text, "  {finding}");
+                }
+                text
+            }
+        }
+    }
+
+    fn facts(&self, file: &Path) -> FileFacts {
+        match self {
+            Self::Model(loaded) => FileFacts::Model(Box::new(ModelFacts {
+                // As it was named, not as the model keeps it.
+                file: Some(with_slashes(file)),
+                ..ModelFacts::of(&loaded.model, &loaded.findings)
+            })),
+            Self::Scene(stage) => FileFacts::Scene(SceneFacts {
+                findings: stage.findings.iter().map(FindingFacts::of).collect(),
+                ..SceneFacts::of(file, &stage.scene, &stage.view)
+            }),
+        }
+    }
+}
+
+/// The facts about a scene.
+#[derive(Serialize)]
+struct SceneFacts {
+    file: String,
+    objects: Vec<ObjectFacts>,
+    cameras: Vec<CameraFacts>,
+    lights: Vec<LightFacts>,
+    background: [u8; 3],
+    observer: &'static str,
+    projection: &'static str,
+    findings: Vec<FindingFacts>,
+}
+
+/// An object of a scene.
+#[derive(Serialize)]
+struct ObjectFacts {
+    name: String,
+    selected: bool,
+    visible: bool,
+    file: Option<String>,
+    /// Whether a box replaces the file, which is missing.
+    missing: bool,
+    shape: Option<&'static str>,
+    vertices: usize,
+    faces: usize,
+}
+
+/// A camera of a scene.
+#[derive(Serialize)]
+struct CameraFacts {
+    name: String,
+    selected: bool,
+    position: [f64; 3],
+}
+
+/// A light of a scene.
+#[derive(Serialize)]
+struct LightFacts {
+    slot: u32,
+    name: String,
+    selected: bool,
+    on: bool,
+    color: [u8; 3],
+}
+
+impl SceneFacts {
+    fn of(file: &Path, scene: &Scene, view: &View) -> Self {
+        let object = |(id, object): (_, &Object)| ObjectFacts {
+            selected: view.object == Some(id),
+            visible: object.visible,
+            ..ObjectFacts::of(&object.name, &object.model)
+        };
+        let camera = |(id, camera): (_, &Camera)| CameraFacts {
+            name: camera.name.clone(),
+            selected: view.camera == id,
+            position: camera.pose.now().eye.to_array(),
+        };
+        let light = |(id, light): (_, &Light)| LightFacts {
+            slot: light.slot,
+            name: light.name.clone(),
+            selected: view.light == Some(id),
+            on: light.on,
+            color: light.color.0,
+        };
+        Self {
+            file: with_slashes(file),
+            objects: scene.objects.iter().map(object).collect(),
+            cameras: scene.cameras.iter().map(camera).collect(),
+            lights: scene.lights.iter().map(light).collect(),
+            background: scene.background.0,
+            observer: match view.observer {
+                Observer::Camera => "camera",
+                Observer::Object => "object",
+            },
+            projection: match view.projection {
+                Projection::Perspective => "perspective",
+                Projection::Orthographic => "orthographic",
+            },
+            findings: Vec::new(),
+        }
+    }
+}
+
+impl ObjectFacts {
+    fn of(name: &str, model: &Model) -> Self {
+        Self {
+            name: name.to_owned(),
+            selected: false,
+            visible: true,
+            file: model.source.as_deref().map(with_slashes),
+            missing: model.is_placeholder() && model.source.is_some(),
+            shape: Shape::of(model).map(|shape| shape.name()),
+            vertices: model.mesh.positions().len(),
+            faces: model.mesh.polygon_count(),
+        }
+    }
+
+    /// Describes the shape: "a cube, 8 vertices, 6 faces".
+    fn text(&self) -> String {
+        let Self { missing, shape, vertices, faces, .. } = self;
+        if let (true, Some(file)) = (*missing, &self.file) {
+            return format!("a box in place of the missing file {file}");
+        }
+        let kind = shape.map_or_else(String::new, |shape| format!("a {shape}, "));
+        format!("{kind}{vertices} vertices, {faces} faces")
+    }
 }
 
 /// Lists the objects, cameras and lights of a scene, one per line; an asterisk marks the selection.
 pub(super) fn scene_text(file: &Path, scene: &Scene, view: &View) -> String {
+    let facts = SceneFacts::of(file, scene, view);
     let mut lines = vec![format!("{:16}{}", "scene", file.display())];
     let head = |what: &str, count: usize| format!("{what:16}{count}");
     let mark = |selected| if selected { '*' } else { ' ' };
-    lines.push(head("objects", scene.objects.len()));
-    for (id, object) in scene.objects.iter() {
-        let counts = model_text(&object.model);
+    lines.push(head("objects", facts.objects.len()));
+    for object in &facts.objects {
         let hidden = if object.visible { "" } else { ", not shown" };
-        let mark = mark(view.object == Some(id));
-        lines.push(format!("{mark} {}: {counts}{hidden}", object.name));
+        let mark = mark(object.selected);
+        lines.push(format!("{mark} {}: {}{hidden}", object.name, object.text()));
     }
-    lines.push(head("cameras", scene.cameras.len()));
-    for (id, camera) in scene.cameras.iter() {
-        let [x, y, z] = camera.pose.now().eye.to_array();
-        lines.push(format!("{} {}: at ({x}, {y}, {z})", mark(view.camera == id), camera.name));
+    lines.push(head("cameras", facts.cameras.len()));
+    for CameraFacts { name, selected, position: [x, y, z] } in &facts.cameras {
+        lines.push(format!("{} {name}: at ({x}, {y}, {z})", mark(*selected)));
     }
-    lines.push(head("lights", scene.lights.len()));
-    for (id, light) in scene.lights.iter() {
-        let [r, g, b] = light.color.0;
-        let on = if light.on { "on" } else { "out" };
-        let mark = mark(view.light == Some(id));
-        let (slot, name) = (light.slot, &light.name);
-        lines.push(format!("{mark} {slot} {name}: {on}, ({r}, {g}, {b})"));
+    lines.push(head("lights", facts.lights.len()));
+    for LightFacts { slot, name, selected, on, color: [r, g, b] } in &facts.lights {
+        let on = if *on { "on" } else { "out" };
+        lines.push(format!("{} {slot} {name}: {on}, ({r}, {g}, {b})", mark(*selected)));
     }
-    let [r, g, b] = scene.background.0;
+    let [r, g, b] = facts.background;
     lines.push(format!("{:16}({r}, {g}, {b})", "background"));
     let projection = match view.projection {
         Projection::Perspective => "in perspective",
         Projection::Orthographic => "in parallel projection",
     };
     // The observer and the projection determine the picture that `render` draws.
-    let observer = match view.observer {
-        Observer::Camera => "the selected camera",
-        Observer::Object => "the selected object",
-    };
-    lines.push(format!("{:16}{observer}, {projection}", "observer"));
+    let observer = facts.observer;
+    lines.push(format!("{:16}the selected {observer}, {projection}", "observer"));
     lines.push(String::new());
     lines.join("\n")
 }

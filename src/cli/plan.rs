@@ -13,7 +13,7 @@ use super::arguments::PictureArguments;
 use super::bar::Bar;
 use super::failure::Failure;
 use super::render;
-use super::talk::print;
+use super::talk::{self, print};
 
 /// A picture whose effects are listed.
 #[derive(Debug, Args)]
@@ -26,7 +26,7 @@ For surfaces, the reason is how pixels are coloured: one colour for each triangl
 Examples:
   marraztu plan
   marraztu plan teapot.obj --lights 0,1 --measure
-  marraztu plan room.marraztu --shading vertex --format csv")]
+  marraztu plan room.marraztu --shading vertex --json")]
 pub(crate) struct Plan {
     #[command(flatten)]
     pub(super) picture: PictureArguments,
@@ -40,6 +40,9 @@ pub(crate) struct Plan {
     /// Output format
     #[arg(long, value_enum, default_value_t = Format::Table)]
     format: Format,
+    /// Print a JSON object, as with "--format json"
+    #[arg(long, conflicts_with = "format")]
+    json: bool,
 }
 
 /// How the list is written.
@@ -64,6 +67,7 @@ pub(crate) fn plan(arguments: &Plan) -> Result<(), Failure> {
         cost::measure(&shot, budget, || false)
     });
     let text = match arguments.format {
+        _ if arguments.json => json(&explained, costs.as_ref()),
         Format::Table => table(&explained, costs.as_ref()),
         Format::Csv => csv(&explained, costs.as_ref()),
         Format::Json => json(&explained, costs.as_ref()),
@@ -175,14 +179,22 @@ fn csv(explained: &Explained, costs: Option<&Costs>) -> String {
     text
 }
 
+/// The effects of a picture, as JSON.
+#[derive(Serialize)]
+struct PlanReport<'a> {
+    width: usize,
+    height: usize,
+    frame_milliseconds: Option<f64>,
+    noise_milliseconds: Option<f64>,
+    effects: Vec<Row<'a>>,
+}
+
 fn json(explained: &Explained, costs: Option<&Costs>) -> String {
-    let effects: Vec<Row<'_>> = explained.uses.iter().map(|one| Row::new(one, costs)).collect();
-    let value = serde_json::json!({
-        "width": explained.size.width,
-        "height": explained.size.height,
-        "frame_milliseconds": costs.map(|costs| costs.frame),
-        "noise_milliseconds": costs.map(|costs| costs.noise),
-        "effects": effects,
-    });
-    format!("{value:#}\n")
+    talk::json(&PlanReport {
+        width: explained.size.width,
+        height: explained.size.height,
+        frame_milliseconds: costs.map(|costs| costs.frame),
+        noise_milliseconds: costs.map(|costs| costs.noise),
+        effects: explained.uses.iter().map(|one| Row::new(one, costs)).collect(),
+    })
 }

@@ -5,6 +5,7 @@ use std::io::{ErrorKind, Write as _};
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use clap::Args;
+use serde::Serialize;
 
 use super::failure::Failure;
 
@@ -35,6 +36,12 @@ impl Talk {
 /// Prints a text to standard output.
 pub(crate) fn print(text: &str) -> Result<(), Failure> {
     write_out(without_controls(text).as_bytes())
+}
+
+/// Formats a value as indented JSON, with a line end.
+pub(crate) fn json(value: &impl Serialize) -> String {
+    let text = serde_json::to_string_pretty(value).expect("all keys are texts");
+    text + "\n"
 }
 
 /// Writes bytes to standard output.

@@ -280,6 +280,21 @@ fn info_describes_each_file_and_a_bad_one_does_not_keep_it_from_the_others() {
 }
 
 #[test]
+fn info_as_json_has_an_object_for_each_file_also_for_one_that_cannot_be_read() {
+    let folder = folder();
+    let files = ["square.obj", "absent.obj", "example:/chess.marraztu"];
+    let (out, err) = ends_with(1, folder.path(), &[&["info", "--json"], &files[..]].concat());
+    assert_eq!(err, "error: absent.obj: there is no such file\n");
+    let json: serde_json::Value = serde_json::from_str(&out).unwrap();
+    let found = json["files"].as_array().unwrap();
+    assert!(found.iter().map(|file| &file["kind"]).eq(["model", "unreadable", "scene"]));
+    assert!(found.iter().map(|file| &file["file"]).eq(files));
+    assert_eq!(found[1]["error"], "absent.obj: there is no such file");
+    assert_eq!(found[0]["bounds"]["min"], serde_json::json!([5.0, 5.0, 5.0]));
+    assert_eq!(found[2]["objects"].as_array().unwrap().len(), 29);
+}
+
+#[test]
 fn names_cannot_control_the_terminal() {
     let folder = folder();
     let square = std::fs::read_to_string(folder.path().join("square.obj")).unwrap();

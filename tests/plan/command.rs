@@ -52,4 +52,5 @@ fn every_line_for_machines_has_every_cell() {
     let json = plan(&["--format", "json"]);
     assert_eq!(json.matches('{').count(), csv.lines().count());
     assert_eq!(json.matches('{').count(), json.matches('}').count());
+    assert_eq!(plan(&["--json"]), json);
 }

@@ -1,11 +1,11 @@
-//! Describes a file as plain text, for `marraztu info FILE`.
+//! Describes a file as plain text, for `marraztu info FILE`: [`ModelFacts`] in words.
 
-use std::collections::BTreeSet;
 use std::fmt::Write;
 
+use super::facts::{EdgeFacts, FaceFacts, MaterialFacts, ModelFacts, PartFacts, SmoothingFacts};
 use super::findings::Finding;
 use super::loaded::Loaded;
-use marraztu_core::scene::{FileMaterial, Mesh, Model, Shape, Smoothing, UpAxis, Winding};
+use marraztu_core::scene::{Model, UpAxis};
 
 /// Lists the shape, parts, materials and findings of a loaded file, line by line.
 pub fn describe(loaded: &Loaded) -> String {
@@ -14,22 +14,26 @@ pub fn describe(loaded: &Loaded) -> String {
 
 /// Lists the shape, parts and materials of a model, and findings, line by line.
 pub fn describe_model(model: &Model, findings: &[Finding]) -> String {
+    let facts = ModelFacts::of(model, findings);
     let mut text = Text::default();
-    text.line("name", &model.name);
+    text.line("name", &facts.name);
     if let Some(source) = &model.source {
         text.line("file", &source.display().to_string());
     }
-    if let Some(shape) = Shape::of(model) {
-        text.line("shape", shape.name());
+    if let Some(shape) = facts.shape {
+        text.line("shape", shape);
     }
-    describe_options(model, &mut text);
-    describe_mesh(&model.mesh, &mut text);
-    if let Some(color) = model.edge_color {
-        let [r, g, b] = color.0;
+    describe_options(&facts, &mut text);
+    describe_mesh(&facts, &mut text);
+    if let Some([r, g, b]) = facts.edge_color {
         text.line("edges drawn in", &format!("({r}, {g}, {b})"));
     }
-    describe_parts(model, &mut text);
-    describe_materials(model, &mut text);
+    text.head("parts", facts.parts.len());
+    facts.parts.iter().take(MOST).for_each(|part| text.item(&describe_part(part)));
+    text.more(facts.parts.len());
+    text.head("materials", facts.materials.len());
+    facts.materials.iter().take(MOST).for_each(|it| text.item(&describe_material(it)));
+    text.more(facts.materials.len());
     if findings.is_empty() {
         text.line("findings", "none");
     } else {
@@ -72,17 +76,17 @@ impl Text {
     }
 }
 
-fn describe_options(model: &Model, text: &mut Text) {
+fn describe_options(facts: &ModelFacts, text: &mut Text) {
     let mut options = Vec::new();
-    let up = model.options.up;
-    if up != UpAxis::default() {
-        options.push(format!("{} is up", up.word().to_uppercase()));
+    let read_with = &facts.read_with;
+    if read_with.up != UpAxis::default().word() {
+        options.push(format!("{} is up", read_with.up.to_uppercase()));
     }
-    let scale = model.options.scale.get();
-    if (scale - 1.0).abs() > 0.0 && model.source.is_some() {
+    let scale = read_with.scale;
+    if (scale - 1.0).abs() > 0.0 && facts.file.is_some() {
         options.push(format!("scaled by {scale}"));
     }
-    if model.options.winding == Winding::Turned {
+    if read_with.flip_winding {
         options.push("winding reversed".to_owned());
     }
     if !options.is_empty() {
@@ -90,105 +94,82 @@ fn describe_options(model: &Model, text: &mut Text) {
     }
 }
 
-fn describe_mesh(mesh: &Mesh, text: &mut Text) {
-    text.line("vertices", &grouped(mesh.positions().len()));
-    text.line("faces", &faces(mesh));
-    text.line("triangles", &grouped(mesh.triangle_count()));
-    for (label, count) in ["lines", "points"].into_iter().zip(mesh.stroke_counts()) {
+fn describe_mesh(facts: &ModelFacts, text: &mut Text) {
+    text.line("vertices", &grouped(facts.vertices));
+    text.line("faces", &faces(&facts.faces));
+    text.line("triangles", &grouped(facts.faces.drawn_triangles));
+    for (label, count) in [("lines", facts.lines), ("points", facts.points)] {
         if count > 0 {
             text.line(label, &grouped(count));
         }
     }
-    match mesh.bounds() {
+    let place = |[x, y, z]: [f64; 3]| format!("({}, {}, {})", short(x), short(y), short(z));
+    match &facts.bounds {
         None => text.line("box", "none"),
         Some(bounds) => {
-            let place =
-                |p: glam::DVec3| format!("({}, {}, {})", short(p.x), short(p.y), short(p.z));
-            // Positions are stored relative to the offset; the box shows the file's.
-            let offset = mesh.offset();
-            let [min, max] = [bounds.min, bounds.max].map(|p| place(p + offset));
-            text.line("box", &format!("{min} to {max}"));
-            if offset != glam::DVec3::ZERO {
-                text.line(
-                    "offset",
-                    &format!("{}, which positions are stored relative to", place(offset)),
-                );
+            text.line("box", &format!("{} to {}", place(bounds.min), place(bounds.max)));
+            if facts.offset != [0.0; 3] {
+                let offset = place(facts.offset);
+                text.line("offset", &format!("{offset}, which positions are stored relative to"));
             }
-            let size = bounds.extent();
-            let size = [size.x, size.y, size.z].map(short).join(" x ");
-            text.line("size", &size);
+            text.line("size", &bounds.size.map(short).join(" x "));
         }
     }
     let yes = |present: bool| if present { "yes" } else { "no" };
-    text.line("normals", if mesh.has_file_normals() { "the file's" } else { "computed" });
-    text.line("smoothing", &smoothing(mesh));
-    let uv = mesh.corners().iter().any(|corner| corner.uv != marraztu_core::scene::NONE);
-    text.line("texture coords", yes(uv));
-    text.line("vertex colours", yes(!mesh.colors().is_empty()));
-    text.line("closed", &closed(mesh));
+    text.line("normals", if facts.file_normals { "the file's" } else { "computed" });
+    text.line("smoothing", &smoothing(&facts.smoothing));
+    text.line("texture coords", yes(facts.texture_coordinates));
+    text.line("vertex colours", yes(facts.vertex_colors));
+    text.line("closed", &closed(&facts.edges));
 }
 
 /// Describes smoothing, such as "crease 60 degrees" or "3 groups".
-fn smoothing(mesh: &Mesh) -> String {
-    match mesh.smoothing() {
-        _ if mesh.has_file_normals_only() => "by the file's normals".to_owned(),
-        Smoothing::Crease(crease) => format!("crease {} degrees", short(crease.get())),
-        Smoothing::Groups(groups) => {
-            let groups: BTreeSet<u32> = groups.iter().copied().filter(|i| *i != 0).collect();
-            if groups.is_empty() { "off".to_owned() } else { number_of(groups.len(), "group") }
-        }
+fn smoothing(smoothing: &SmoothingFacts) -> String {
+    match smoothing {
+        SmoothingFacts::FileNormals => "by the file's normals".to_owned(),
+        SmoothingFacts::Crease(crease) => format!("crease {} degrees", short(*crease)),
+        SmoothingFacts::Groups(0) => "off".to_owned(),
+        SmoothingFacts::Groups(count) => number_of(*count, "group"),
     }
 }
 
 /// Counts faces by size, such as "12,480 (480 triangles, 12,000 quads)".
-fn faces(mesh: &Mesh) -> String {
-    let polygons = 0..u32::try_from(mesh.polygon_count()).unwrap_or(u32::MAX);
-    let sizes: Vec<usize> = polygons.map(|i| mesh.polygon(i).len()).collect();
-    let of = |right: fn(usize) -> bool| sizes.iter().filter(|size| right(**size)).count();
+fn faces(faces: &FaceFacts) -> String {
     let counts = [
-        (of(|n| n == 3), "triangle", String::new()),
-        (of(|n| n == 4), "quad", String::new()),
-        (
-            of(|n| n > 4),
-            "n-gon",
-            format!(" of up to {} corners", sizes.iter().max().copied().unwrap_or(0)),
-        ),
+        (faces.triangles, "triangle", String::new()),
+        (faces.quads, "quad", String::new()),
+        (faces.larger, "n-gon", format!(" of up to {} corners", faces.most_corners)),
     ];
     let kinds: Vec<String> = counts
         .into_iter()
         .filter(|(count, ..)| *count > 0)
         .map(|(count, name, more)| format!("{}{more}", number_of(count, name)))
         .collect();
-    let all = grouped(sizes.len());
+    let all = grouped(faces.all);
     if kinds.is_empty() { all } else { format!("{all} ({})", kinds.join(", ")) }
 }
 
 /// Says whether the surface is closed, as for back-face culling, and counts the edges that do not
 /// have two polygons.
-fn closed(mesh: &Mesh) -> String {
-    let edges = mesh.edges();
-    let sides = |right: fn(usize) -> bool| {
-        edges.iter().filter(|edge| right(mesh.edge_polygons(edge).len())).count()
-    };
-    let (borders, crowded) = (sides(|n| n == 1), sides(|n| n > 2));
-    let all = number_of(edges.len(), "edge");
-    if edges.is_empty() {
+fn closed(edges: &EdgeFacts) -> String {
+    let EdgeFacts { closed, all, of_one_face, of_more_than_two, split } = *edges;
+    if all == 0 {
         return "no: there are no edges".to_owned();
     }
-    let is_closed = mesh.is_closed();
-    let yes = if is_closed { "yes" } else { "no" };
-    if borders == 0 && crowded == 0 {
-        let turned = if is_closed { "" } else { "; some neighbours have opposite windings" };
+    let all = number_of(all, "edge");
+    let yes = if closed { "yes" } else { "no" };
+    if of_one_face == 0 && of_more_than_two == 0 {
+        let turned = if closed { "" } else { "; some neighbours have opposite windings" };
         return format!("{yes} ({all}, each of two faces{turned})");
     }
     let mut faults = Vec::new();
-    if borders > 0 {
-        faults.push(format!("{} of one face", grouped(borders)));
+    if of_one_face > 0 {
+        faults.push(format!("{} of one face", grouped(of_one_face)));
     }
-    if crowded > 0 {
-        faults.push(format!("{} of more than two", grouped(crowded)));
+    if of_more_than_two > 0 {
+        faults.push(format!("{} of more than two", grouped(of_more_than_two)));
     }
-    match mesh.split_edges() {
+    match split {
         0 => {}
         1 => faults.push("1 edge is split by corners of other faces: gaps may show".to_owned()),
         n => faults.push(format!(
@@ -199,57 +180,34 @@ fn closed(mesh: &Mesh) -> String {
     format!("{yes} ({all}: {})", faults.join(", "))
 }
 
-fn describe_parts(model: &Model, text: &mut Text) {
-    let parts = model.mesh.parts();
-    let mut counts = vec![[0; 3]; parts.len()];
-    for part in model.mesh.polygon_parts() {
-        counts[*part as usize][0] += 1;
+fn describe_part(part: &PartFacts) -> String {
+    let PartFacts { name, faces, lines, points, material } = part;
+    let mut content = Vec::new();
+    if *faces > 0 || lines + points == 0 {
+        content.push(number_of(*faces, "face"));
     }
-    for stroke in model.mesh.strokes() {
-        counts[stroke.part as usize][if stroke.is_point() { 2 } else { 1 }] += 1;
-    }
-    text.head("parts", parts.len());
-    for (part, counts) in parts.iter().zip(counts).take(MOST) {
-        let [faces, lines, points] = counts;
-        let strokes = [(lines, "line"), (points, "point")];
-        let mut content = Vec::new();
-        if faces > 0 || lines + points == 0 {
-            content.push(number_of(faces, "face"));
-        }
-        let some = strokes.into_iter().filter(|(count, _)| *count > 0);
-        content.extend(some.map(|(count, name)| number_of(count, name)));
-        let content = content.join(", ");
-        let material = part.material.and_then(|i| model.materials.get(i as usize));
-        let material = material.map_or_else(
-            || "no material: silver".to_owned(),
-            |material| format!("material \"{}\"", material.name),
-        );
-        text.item(&format!("\"{}\": {content}, {material}", part.name));
-    }
-    text.more(parts.len());
-}
-
-fn describe_materials(model: &Model, text: &mut Text) {
-    text.head("materials", model.materials.len());
-    for material in model.materials.iter().take(MOST) {
-        text.item(&describe_material(material));
-    }
-    text.more(model.materials.len());
-}
-
-fn describe_material(material: &FileMaterial) -> String {
-    let color = |color: [f64; 3]| color.map(short).join(" ");
-    let m = &material.material;
-    let mut text = format!(
-        "\"{}\": Ka {}, Kd {}, Ks {}, Ns {}",
-        material.name,
-        color(m.ambient),
-        color(m.diffuse),
-        color(m.specular),
-        short(m.exponent)
+    let strokes = [(*lines, "line"), (*points, "point")];
+    let some = strokes.into_iter().filter(|(count, _)| *count > 0);
+    content.extend(some.map(|(count, name)| number_of(count, name)));
+    let material = material.as_ref().map_or_else(
+        || "no material: silver".to_owned(),
+        |material| format!("material \"{material}\""),
     );
-    if m.emission != [0.0; 3] {
-        let _ = write!(text, ", Ke {}", color(m.emission));
+    format!("\"{name}\": {}, {material}", content.join(", "))
+}
+
+fn describe_material(material: &MaterialFacts) -> String {
+    let MaterialFacts { name, ambient, diffuse, specular, exponent, emission, .. } = material;
+    let color = |color: &[f64; 3]| color.map(short).join(" ");
+    let mut text = format!(
+        "\"{name}\": Ka {}, Kd {}, Ks {}, Ns {}",
+        color(ambient),
+        color(diffuse),
+        color(specular),
+        short(*exponent)
+    );
+    if *emission != [0.0; 3] {
+        let _ = write!(text, ", Ke {}", color(emission));
     }
     if material.unlit {
         text.push_str(", not lit");
@@ -258,12 +216,8 @@ fn describe_material(material: &FileMaterial) -> String {
         let _ = write!(text, ", d {}", short(material.opacity));
         text.push_str(if material.opacity == 0.0 { " (draws nothing)" } else { " (transparent)" });
     }
-    // The texture and all maps are listed alike, with file name and size.
-    let maps = material.maps.iter().map(|(kind, map)| (kind.statement(), &map.texture));
-    for (word, texture) in material.texture.iter().map(|it| ("texture", it)).chain(maps) {
-        let size = texture.picture.size();
-        let name = super::error::short_name(&texture.source);
-        let _ = write!(text, ", {word} {name} ({} x {})", size.width, size.height);
+    for map in &material.maps {
+        let _ = write!(text, ", {} {} ({} x {})", map.kind, map.file, map.width, map.height);
     }
     text
 }
@@ -355,10 +309,11 @@ findings        1
         ] {
             let options = LoadOptions::default();
             let loaded = parse(text.as_bytes(), "a.obj", None, &options, &Progress::new());
-            let mesh = &loaded.unwrap().model.mesh;
-            assert_eq!(mesh.is_closed(), is_closed, "{text}");
+            let model = loaded.unwrap().model;
+            assert_eq!(model.mesh.is_closed(), is_closed, "{text}");
             let yes = if is_closed { "yes (" } else { "no (" };
-            assert!(closed(mesh).starts_with(yes), "{text}{}", closed(mesh));
+            let closed = closed(&ModelFacts::of(&model, &[]).edges);
+            assert!(closed.starts_with(yes), "{text}{closed}");
         }
     }
 }

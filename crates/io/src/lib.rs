@@ -23,6 +23,7 @@ mod dimples;
 mod error;
 mod examples;
 mod export;
+mod facts;
 mod finding_kinds;
 mod findings;
 mod fingerprint;
@@ -59,6 +60,10 @@ pub use describe::{describe, describe_model, short as short_number};
 pub use error::LoadError;
 pub use examples::{EXAMPLES, Example, check_file, is_example};
 pub use export::{EXPORT_ENDINGS, ExportOptions, Exported, check_export_target, export};
+pub use facts::{
+    BoundsFacts, EdgeFacts, FaceFacts, FindingFacts, MapFacts, MaterialFacts, ModelFacts,
+    PartFacts, ReadFacts, SmoothingFacts, with_slashes,
+};
 pub use findings::{Finding, FindingKind, joined};
 pub use fingerprint::Fingerprint;
 pub use input::Input;

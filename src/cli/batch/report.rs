@@ -10,6 +10,7 @@ use std::iter::Peekable;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
+pub(crate) use marraztu_io::with_slashes as shown;
 use marraztu_io::{self as io, NewFile, SaveError, Sources, Spool};
 use serde::{Deserialize, Serialize};
 
@@ -115,12 +116,6 @@ impl Line {
             error,
         }
     }
-}
-
-/// Formats a path with slashes, as on every system.
-pub(crate) fn shown(path: &Path) -> String {
-    let text = path.to_string_lossy();
-    if cfg!(windows) { text.replace('\\', "/") } else { text.into_owned() }
 }
 
 /// Formats a value as a line.

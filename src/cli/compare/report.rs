@@ -8,6 +8,7 @@ use serde::Serialize;
 use super::measure::{Difference, Limits};
 use super::pairs::{Inputs, Pair};
 use crate::cli::batch::report::shown;
+use crate::cli::talk;
 
 /// The result of a pair.
 #[derive(Clone, Debug, PartialEq)]
@@ -194,6 +195,5 @@ pub(super) fn json(results: &[Compared], limits: &Limits) -> String {
         summary,
         pairs: results.iter().map(PairReport::of).collect(),
     };
-    let text = serde_json::to_string_pretty(&report).expect("all keys are texts");
-    text + "\n"
+    talk::json(&report)
 }
