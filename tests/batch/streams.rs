@@ -172,7 +172,37 @@ fn progress_states_the_pictures_per_second_and_the_time_left() {
     let folder = folder();
     let (_, err) = ends_with(0, folder.path(), &all_models(&["--progress"]));
     let last = err.lines().rfind(|line| line.starts_with("progress: ")).unwrap();
-    assert!(last.contains("15 of 15 pictures") && last.contains(" a second, 0 s left"), "{err}");
+    assert!(last.contains("100%: 15 of 15 pictures, 0 missing, "), "{err}");
+    assert!(last.contains(" a second, 0 s left"), "{err}");
+}
+
+#[test]
+fn a_dry_run_estimates_bytes_and_time_by_a_sample_and_writes_nothing() {
+    let folder = folder();
+    let before = contents(folder.path());
+    std::fs::write(folder.path().join("models/broken.obj"), "f 1 2 3\n").unwrap();
+    let estimate = |more: &[&str]| {
+        let (out, err) = ends_with(0, folder.path(), &all_models(&[&["--dry-run"], more].concat()));
+        assert_eq!(out.lines().count(), 18);
+        err
+    };
+    let err = estimate(&["--threads", "1"]);
+    assert!(err.starts_with("note: 18 pictures of 6 models: about "), "{err}");
+    assert!(err.contains(" on 1 thread, by a sample of 18\n"), "{err}");
+    assert!(err.contains("note: 3 of the sample cannot be drawn, such as: models/broken"), "{err}");
+    assert!(err.contains("note: shards are not needed"), "{err}");
+    assert_eq!(estimate(&["--quiet"]), "");
+    std::fs::remove_file(folder.path().join("models/broken.obj")).unwrap();
+    assert!(contents(folder.path()) == before);
+    // The sample has all pictures, so the bytes are right to the digits that are shown.
+    ends_with(0, folder.path(), &all_models(&[]));
+    let bytes: usize = contents(&folder.path().join("out")).values().map(Vec::len).sum();
+    let (_, err) = ends_with(0, folder.path(), &all_models(&["--dry-run"]));
+    let stated = err.split("about ").nth(1).and_then(|rest| rest.split(" kB").next()).unwrap();
+    let stated: f64 = stated.parse().unwrap();
+    assert!((stated - bytes as f64 / 1e3).abs() < 0.011, "{stated} kB instead of {bytes} B");
+    let (_, err) = ends_with(0, folder.path(), &all_models(&["--dry-run", "--resume"]));
+    assert!(err.contains("about 0 B and 0 s"), "{err}");
 }
 
 #[cfg(unix)]

@@ -110,7 +110,7 @@ pub(super) struct DatasetObject {
 }
 
 /// A file of a data set.
-type File = (PathBuf, Vec<u8>);
+pub(super) type File = (PathBuf, Vec<u8>);
 
 /// Describes a picture, and encodes its masks. Fails if the batch ends, or BOP cannot describe the
 /// pose of an object.

@@ -42,7 +42,7 @@ impl Meter {
         let bar = is_wanted.then(|| {
             let target = ProgressDrawTarget::stderr();
             let bar = ProgressBar::with_draw_target(u64::try_from(all).ok(), target);
-            let style = "{bar:30} {pos} of {len} pictures, {per_sec}, {eta} left";
+            let style = "{bar:30} {percent}%: {pos} of {len} pictures, {msg}{per_sec}, {eta} left";
             match ProgressStyle::with_template(style) {
                 Ok(style) => bar.with_style(style),
                 Err(_) => bar,
@@ -69,6 +69,9 @@ impl Meter {
             }
         };
         self.missing += 1;
+        if let Some(bar) = &self.bar {
+            bar.set_message(format!("{} missing, ", self.missing));
+        }
         if self.errors.len() > MOST_ERRORS || !self.errors.insert(fault.reason()) {
             return;
         }
@@ -95,8 +98,11 @@ impl Meter {
         let Self { done, all, missing, .. } = *self;
         let rate = self.rate();
         let left = time_left(all - done, rate);
-        let text =
-            format!("{done} of {all} pictures, {missing} missing, {rate:.1} a second, {left} left");
+        let percent = 100 * done / all.max(1);
+        let text = format!(
+            "{percent}%: {done} of {all} pictures, {missing} missing, {rate:.1} a second, {left} \
+             left"
+        );
         say("progress", &text);
     }
 
@@ -121,12 +127,16 @@ impl Meter {
     }
 }
 
-/// Returns the time for this number of pictures: "35 s", "12 min", "3 h 20 min".
+/// Returns the time for this number of pictures.
 #[expect(clippy::cast_precision_loss, reason = "for the eye")]
-#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "limited before")]
 fn time_left(pictures: usize, rate: f64) -> String {
     // Longer times are a guess of the first seconds.
-    let seconds = (pictures as f64 / rate).min(1e8);
+    time_text((pictures as f64 / rate).min(1e8))
+}
+
+/// Formats a time in seconds: "35 s", "12 min", "3 h 20 min".
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
+pub(super) fn time_text(seconds: f64) -> String {
     match seconds {
         0.0..99.5 => format!("{seconds:.0} s"),
         0.0..5970.0 => format!("{:.0} min", seconds / 60.0),

@@ -14,6 +14,7 @@ mod cache;
 mod camera_file;
 mod dataset;
 mod digest;
+mod estimate;
 mod jobs;
 pub(super) mod list;
 mod masks;
@@ -45,6 +46,7 @@ use marraztu_io::{PICTURE_FORMATS, Sources};
 use signal_hook::consts::{SIGINT, SIGTERM};
 
 use self::dataset::{Dataset, check_used_folder};
+use self::estimate::print_estimate;
 use self::jobs::Plan;
 use self::meter::Meter;
 use self::options::OptionTexts;
@@ -61,7 +63,7 @@ use super::arguments::choice;
 use super::cameras::{CAMERAS, Cameras, Earlier, check_cameras};
 use super::failure::Failure;
 use super::layers::NUMBER_ENDINGS;
-use super::talk::{Talk, note, print};
+use super::talk::{Talk, is_quiet, note, print};
 use super::values::threads;
 
 /// The exit status if every missing picture is caused by its input.
@@ -135,7 +137,9 @@ pub(crate) struct Batch {
     /// The folder of contact sheets
     #[arg(long, value_name = "FOLDER", default_value = ".", requires = "sheet")]
     sheets: PathBuf,
-    /// Print the jobs, one per line: number, file, view and output, separated by tabs
+    /// Print the jobs, one per line: number, file, view and output, separated by tabs; and an
+    /// estimate of bytes, time and shards, by a sample of 20 pictures that are drawn but not
+    /// written
     #[arg(long)]
     dry_run: bool,
     /// Skip pictures that an earlier run has drawn from the same files with the same options
@@ -184,7 +188,9 @@ pub(super) fn batch(arguments: Box<Batch>) -> Result<(), Failure> {
     let plan = Plan::of(&rows.rows, arguments.shard.unwrap_or(Shard::WHOLE));
     check_inputs(&plan, &rows)?;
     if arguments.dry_run {
-        return print_jobs(&plan);
+        print_jobs(&plan)?;
+        rehearse(plan, arguments);
+        return Ok(());
     }
     let name = cameras_name(&arguments);
     check_files(&arguments, &name, &plan, &rows)?;
@@ -345,6 +351,15 @@ fn print_jobs(plan: &Plan) -> Result<(), Failure> {
         }
     }
     print(&text)
+}
+
+/// Prints an estimate of the batch, unless only errors are wanted.
+fn rehearse(plan: Plan, arguments: Arc<Batch>) {
+    if !is_quiet() {
+        silence_panics();
+        let (threads, is_shard) = (arguments.threads(), arguments.shard.is_some());
+        print_estimate(&Studio::new(plan, arguments), threads, is_shard);
+    }
 }
 
 /// Returns a cell that holds the number of the last signal to end.

@@ -26,6 +26,7 @@ use super::Batch;
 use super::cache::{LoadedStage, StageCache};
 use super::dataset::{self, Dataset, DatasetImage};
 use super::digest::{SourceHash, Stamper, hash_of, hash_of_file};
+use super::estimate::Rehearsed;
 use super::jobs::{Job, Plan};
 use super::options::PictureOptions;
 use super::outcome::{Drawn, Fault, FileSum, Outcome, Spent};
@@ -158,6 +159,17 @@ impl Studio {
         }
     }
 
+    /// Draws and encodes the picture of a job, without writing it.
+    pub(super) fn rehearse(&self, job: &Job, renderer: &mut Renderer) -> Rehearsed {
+        let (until, spent) = (self.end(), Spent::default());
+        let mut attempt = Attempt { studio: self, job, until, source: None, spent };
+        let bytes = guarded(|| attempt.rehearsed(renderer)).unwrap_or_else(|panic| {
+            *renderer = Renderer::default();
+            Err(Fault::Program(panic))
+        });
+        Rehearsed { bytes, spent: attempt.spent, is_large: self.is_large(job.size()) }
+    }
+
     /// Removes the files of an earlier run for a picture of a data set that could not be drawn: its
     /// tables do not describe them.
     fn remove_earlier(&self, job: &Job) {
@@ -228,9 +240,14 @@ impl Studio {
         (Some(hash) == stamp).then_some(found)
     }
 
+    /// Returns whether all threads draw a picture of this size together.
+    fn is_large(&self, size: Size) -> bool {
+        size.area() > LARGE && self.arguments.threads() > 1
+    }
+
     /// Returns the pool for a large picture, as soon as it is free; `None` for a small one.
     fn pool_for(&self, size: Size) -> Option<MutexGuard<'_, Option<ThreadPool>>> {
-        if size.area() <= LARGE || self.arguments.threads() == 1 {
+        if !self.is_large(size) {
             return None;
         }
         let mut large = self.large.lock().unwrap_or_else(PoisonError::into_inner);
@@ -297,6 +314,35 @@ impl Attempt<'_> {
         Ok(Drawn { files, camera, image, findings, unchanged: false })
     }
 
+    /// Draws and encodes the picture, unless it is up to date. Returns the bytes of its files.
+    fn rehearsed(&mut self, renderer: &mut Renderer) -> Result<u64, Fault> {
+        if self.studio.is_up_to_date(self.job) {
+            return Ok(0);
+        }
+        let (stage, findings) = self.stage()?;
+        let contents = self.contents(renderer, &stage, findings.len())?;
+        let begin = Instant::now();
+        let masks = self.masks(renderer, &stage)?.map(|(files, _)| files);
+        self.spent.draw += begin.elapsed();
+        let masks = masks.iter().flatten().map(|(_, content)| content);
+        Ok(contents.iter().chain(masks).map(|content| content.len() as u64).sum())
+    }
+
+    /// Draws the masks of a data set, and describes the picture for its tables.
+    fn masks(
+        &self,
+        renderer: &mut Renderer,
+        stage: &Stage,
+    ) -> Result<Option<(Vec<dataset::File>, DatasetImage)>, Fault> {
+        let (studio, job) = (self.studio, self.job);
+        let Some(dataset @ (Dataset::Bop | Dataset::Coco)) = studio.arguments.dataset else {
+            return Ok(None);
+        };
+        let wanted = || !studio.is_stopped();
+        let shot = stage.shot(job.size());
+        dataset::image(dataset, renderer, (job, &shot), &wanted).map(Some)
+    }
+
     /// Writes the masks of a data set, and describes the picture for its tables.
     fn dataset_image(
         &self,
@@ -304,18 +350,13 @@ impl Attempt<'_> {
         stage: &Stage,
     ) -> Result<Option<Box<DatasetImage>>, Fault> {
         let (studio, job) = (self.studio, self.job);
-        let Some(dataset @ (Dataset::Bop | Dataset::Coco)) = studio.arguments.dataset else {
-            return Ok(None);
-        };
-        let wanted = || !studio.is_stopped();
-        let shot = stage.shot(job.size());
-        let (files, image) = dataset::image(dataset, renderer, (job, &shot), &wanted)?;
+        let Some((files, image)) = self.masks(renderer, stage)? else { return Ok(None) };
         for (path, content) in files {
             studio.prepare_folder(path.parent().unwrap_or(Path::new("")))?;
             io::check_replaced(&path).map_err(|error| output(&error))?;
             io::save_encoded(&path, &content).map_err(|error| output(&error))?;
         }
-        if dataset == Dataset::Bop {
+        if studio.arguments.dataset == Some(Dataset::Bop) {
             dataset::remove_masks(job, image.objects.len());
         }
         Ok(Some(Box::new(image)))

@@ -136,7 +136,8 @@ pub(super) fn text(results: &[Compared], inputs: &Inputs<'_>) -> String {
     }
     let Counts { same, differs, missing, extra, errors, .. } = Counts::of(results);
     text + &format!(
-        "{same} same, {differs} different, {missing} missing, {extra} extra, {errors} not comparable\n"
+        "{same} same, {differs} different, {missing} missing, {extra} extra, {errors} not \
+         comparable\n"
     )
 }
 
