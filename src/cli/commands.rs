@@ -91,6 +91,12 @@ pub(crate) enum Headless {
     Lab(Box<super::lab::Lab>),
     /// Check that this processor draws the same pictures as all others
     Verify(super::verify::Verify),
+    /// Print a script that completes commands and options in a shell
+    #[cfg(not(target_family = "wasm"))]
+    Completions(super::manuals::Completions),
+    /// Write manual pages for `man`
+    #[cfg(not(target_family = "wasm"))]
+    Man(super::manuals::Manuals),
 }
 
 impl Headless {
@@ -109,7 +115,11 @@ impl Headless {
             #[cfg(not(target_family = "wasm"))]
             Self::Batch(_) => Some(1),
             #[cfg(not(target_family = "wasm"))]
-            Self::Merge(_) | Self::Compare(_) | Self::Views(_) => None,
+            Self::Merge(_)
+            | Self::Compare(_)
+            | Self::Views(_)
+            | Self::Completions(_)
+            | Self::Man(_) => None,
             #[cfg(feature = "desktop")]
             Self::Keys(_) => None,
             Self::Thumbnail(_) | Self::Export(_) | Self::Info(_) | Self::Verify(_) => None,

@@ -23,6 +23,8 @@ mod keys;
 mod lab;
 mod layers;
 #[cfg(not(target_family = "wasm"))]
+mod manuals;
+#[cfg(not(target_family = "wasm"))]
 mod merge;
 #[cfg(feature = "desktop")]
 mod open;
@@ -43,7 +45,7 @@ mod views;
 
 use std::process::ExitCode;
 
-use clap::error::ErrorKind;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, FromArgMatches as _};
 use marraztu_core::base::threads::{self, Caller};
 
@@ -69,7 +71,7 @@ pub(crate) fn run() -> ExitCode {
     });
     let (arguments, name) = match parsed {
         Ok(parsed) => parsed,
-        Err(wrong) => return usage(&corrected(wrong)),
+        Err(wrong) => return usage(&with_usage(corrected(wrong), &mut command)),
     };
     if marraztu_render::simd::levels().is_empty() {
         say("error", &"drawing needs a processor with SSE4.2 (x86-64-v2)");
@@ -99,6 +101,10 @@ pub(crate) fn run() -> ExitCode {
         #[cfg(not(target_family = "wasm"))]
         Some(Headless::Lab(arguments)) => lab::lab(&arguments),
         Some(Headless::Verify(arguments)) => verify::verify(&arguments),
+        #[cfg(not(target_family = "wasm"))]
+        Some(Headless::Completions(arguments)) => manuals::completions(&arguments),
+        #[cfg(not(target_family = "wasm"))]
+        Some(Headless::Man(arguments)) => manuals::man(&arguments),
         #[cfg(feature = "desktop")]
         None => open::open(&arguments.files, arguments.shell, arguments.preset),
         #[cfg(not(feature = "desktop"))]
@@ -120,6 +126,17 @@ pub(crate) fn run() -> ExitCode {
             ExitCode::FAILURE
         }
     }
+}
+
+/// Adds the usage of the command in the first argument, which clap leaves out for invalid values.
+fn with_usage(mut wrong: clap::Error, command: &mut clap::Command) -> clap::Error {
+    let name = std::env::args_os().nth(1).and_then(|name| name.into_string().ok());
+    let own = name.and_then(|name| command.find_subcommand_mut(name));
+    if let (true, Some(own)) = (wrong.use_stderr() && wrong.get(ContextKind::Usage).is_none(), own)
+    {
+        wrong.insert(ContextKind::Usage, ContextValue::StyledStr(own.render_usage()));
+    }
+    wrong
 }
 
 /// Suggests the command that the first argument is close to.

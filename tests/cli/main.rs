@@ -280,6 +280,38 @@ fn info_describes_each_file_and_a_bad_one_does_not_keep_it_from_the_others() {
 }
 
 #[test]
+fn completions_of_every_shell_know_the_commands_and_their_options() {
+    let folder = folder();
+    for shell in ["bash", "zsh", "fish", "powershell", "elvish"] {
+        let (script, _) = ends_with(0, folder.path(), &["completions", shell]);
+        for word in ["compare", "completions", "junit", "dry-run"] {
+            assert!(script.contains(word), "{shell}: {word}");
+        }
+        // PowerShell and Elvish complete no values.
+        assert!(script.contains("orthographic") || ["powershell", "elvish"].contains(&shell));
+    }
+    let (_, err) = ends_with(2, folder.path(), &["completions", "tcsh"]);
+    assert!(err.contains("bash, elvish, fish, powershell, zsh"), "{err}");
+}
+
+#[test]
+fn manual_pages_are_written_for_each_command_and_replace_no_other_file() {
+    let folder = folder();
+    for _ in 0..2 {
+        ends_with(0, folder.path(), &["man", "share/man1"]);
+    }
+    let at = |name: &str| folder.path().join("share/man1").join(name);
+    let page = std::fs::read_to_string(at("marraztu-batch.1")).unwrap();
+    assert!(page.contains(".TH marraztu\\-batch 1 ") || page.contains(".TH marraztu-batch 1 "));
+    assert!(page.contains(".SH EXAMPLES") && page.contains(".SH \"EXIT STATUS\""));
+    assert!(at("marraztu.1").exists());
+    std::fs::write(at("marraztu-render.1"), "Roses are red").unwrap();
+    let (_, err) = ends_with(1, folder.path(), &["man", "share/man1"]);
+    assert!(err.contains("marraztu-render.1: a file with this name exists"), "{err}");
+    assert_eq!(std::fs::read_to_string(at("marraztu-render.1")).unwrap(), "Roses are red");
+}
+
+#[test]
 fn info_as_json_has_an_object_for_each_file_also_for_one_that_cannot_be_read() {
     let folder = folder();
     let files = ["square.obj", "absent.obj", "example:/chess.marraztu"];
@@ -348,6 +380,8 @@ fn invalid_arguments_end_with_2_and_draw_nothing() {
     for (arguments, word) in wrong {
         let (out, err) = ends_with(2, folder.path(), arguments);
         assert!(err.starts_with("error: ") && err.contains(word), "{arguments:?}\n{err}");
+        let own = if arguments[0].starts_with('-') { "" } else { arguments[0] };
+        assert!(err.contains(&format!("\nUsage: marraztu {own}")), "{arguments:?}\n{err}");
         assert_eq!(out, "");
     }
     assert!(!folder.path().join("a.png").exists());
