@@ -121,6 +121,13 @@ impl CameraFrame {
         Self { folder: folder.to_owned(), scene, entry, ids: names.map(ids) }
     }
 
+    /// Formats the camera of one picture with the meaning of its ids, as a JSON object.
+    pub(crate) fn json(&self) -> Vec<u8> {
+        let mut entry = self.entry.clone();
+        entry.extend(self.ids.clone().map(|ids| ("ids".to_owned(), ids)));
+        Value::Object(entry).to_string().into_bytes()
+    }
+
     /// Returns the name that tells entries apart.
     fn file_path(entry: &Map<String, Value>) -> &str {
         entry.get("file_path").and_then(Value::as_str).unwrap_or_default()

@@ -7,6 +7,7 @@ mod datasets;
 mod layers;
 mod pictures;
 mod streams;
+mod tars;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -93,7 +93,7 @@ pub use scene_file::{
 };
 pub use sources::Sources;
 pub use spool::Spool;
-pub use stamp::{encode_stamped, read_stamp, stamped_at_end};
+pub use stamp::{encode_stamped, read_stamp, stamp_of, stamped_at_end};
 pub use stl::usual_crease;
 pub use texture::{
     load_picture, load_texture, load_texture_with, texture_endings, texture_formats,

@@ -14,7 +14,7 @@
 //! | OpenEXR, NumPy | a line after the content, which readers ignore |
 
 use std::fs::File;
-use std::io::{Read, Seek, SeekFrom};
+use std::io::{Cursor, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use super::picture::{PictureFormat, has_alpha, png_with_text, sides};
@@ -112,8 +112,18 @@ fn chunk(name: &[u8; 4], content: &[u8]) -> Vec<u8> {
 
 /// Reads the stamp of a picture. `None` if the file does not exist, has no stamp, or is incomplete.
 pub fn read_stamp(path: &Path) -> Option<String> {
-    let mut file = File::open(path).ok()?;
+    let file = File::open(path).ok()?;
     let length = file.metadata().ok()?.len();
+    stamp_in(file, length)
+}
+
+/// Works like [`read_stamp`], for the content of a file.
+pub fn stamp_of(content: &[u8]) -> Option<String> {
+    stamp_in(Cursor::new(content), content.len() as u64)
+}
+
+/// Finds the stamp in a file of this length.
+fn stamp_in(mut file: impl Read + Seek, length: u64) -> Option<String> {
     let mut head = Vec::with_capacity(HEAD);
     file.by_ref().take(HEAD as u64).read_to_end(&mut head).ok()?;
     let (stamp, is_whole) = match head[..] {
@@ -133,7 +143,7 @@ pub fn read_stamp(path: &Path) -> Option<String> {
 }
 
 /// Returns whether a file ends with these bytes.
-fn ends_with(file: &mut File, end: &[u8]) -> bool {
+fn ends_with(file: &mut (impl Read + Seek), end: &[u8]) -> bool {
     let mut last = Vec::new();
     let back = i64::try_from(end.len()).unwrap_or(i64::MAX);
     let read = file.seek(SeekFrom::End(-back)).and_then(|_| file.read_to_end(&mut last));
@@ -175,7 +185,7 @@ fn jpeg_stamp(head: &[u8]) -> Option<Vec<u8>> {
 }
 
 /// Reads the chunk after the pixels. The file is complete if its size is the stated one.
-fn webp_stamp(head: &[u8], file: &mut File, length: u64) -> Option<(Vec<u8>, bool)> {
+fn webp_stamp(head: &[u8], file: &mut (impl Read + Seek), length: u64) -> Option<(Vec<u8>, bool)> {
     let number = |at: usize| Some(u32::from_le_bytes(*head.get(at..)?.first_chunk()?));
     // The signature has 12 bytes and the extended header 18.
     if head.get(12..16)? != b"VP8X" {
@@ -193,7 +203,7 @@ fn webp_stamp(head: &[u8], file: &mut File, length: u64) -> Option<(Vec<u8>, boo
 }
 
 /// Reads the stamp after the content.
-fn stamp_at_end(file: &mut File, length: u64) -> Option<Vec<u8>> {
+fn stamp_at_end(file: &mut (impl Read + Seek), length: u64) -> Option<Vec<u8>> {
     let most = (MARK.len() + LONGEST + 1) as u64;
     file.seek(SeekFrom::Start(length.saturating_sub(most))).ok()?;
     let mut last = Vec::new();
@@ -240,6 +250,7 @@ mod tests {
                 let content = encode_stamped(format, &picture(alpha), STAMP).unwrap();
                 save_encoded(&stamped, &content).unwrap();
                 assert_eq!(read_stamp(&stamped).as_deref(), Some(STAMP), "{name}");
+                assert_eq!(stamp_of(&content).as_deref(), Some(STAMP), "{name}");
                 assert_eq!(read_stamp(&plain), None, "{name}");
                 assert_eq!(
                     load_picture(&stamped).unwrap(),

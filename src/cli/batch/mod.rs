@@ -28,6 +28,7 @@ mod shard;
 mod sheets;
 mod studio;
 mod tables;
+mod tars;
 mod template;
 pub(super) mod views;
 
@@ -50,8 +51,8 @@ use self::estimate::print_estimate;
 use self::jobs::Plan;
 use self::meter::Meter;
 use self::options::OptionTexts;
-use self::outcome::Outcome;
 pub(super) use self::outcome::Status;
+use self::outcome::{Fault, Outcome};
 use self::outputs::{check_inputs, check_outputs};
 use self::report::{Counts, Reporter, check_report};
 use self::rows::{Row, Rows};
@@ -59,9 +60,10 @@ use self::shard::{Shard, shard};
 use self::sheets::{Grid, check_sheets, grid, write_sheets};
 use self::studio::{Studio, silence_panics};
 use self::tables::Tables;
+use self::tars::{TarNames, Tars};
 use super::arguments::choice;
 use super::cameras::{CAMERAS, Cameras, Earlier, check_cameras};
-use super::failure::Failure;
+use super::failure::{Failure, usage};
 use super::layers::NUMBER_ENDINGS;
 use super::talk::{Talk, is_quiet, note, print};
 use super::values::threads;
@@ -92,10 +94,15 @@ picture is drawn.
 Names in --out have the fields {dir} {stem} {name} {index} {view} {view_name} {layer} {ext};
 {index:06} and {view:03} have leading zeros, and {{ is a brace.
 
+If --out ends with .tar, archive K has the pictures K * N to (K + 1) * N - 1 of the list, each with
+a description of its camera: 000000012.png and 000000012.json, or with --layers
+000000012.depth.npy and so on. --format says the format. --shard then deals archives, not models.
+
 Examples:
   marraztu batch \"models/**/*.obj\" --views 8 --size 256 --out \"out/{dir}/{stem}-{view:02}.png\"
   marraztu batch --list list.csv --out \"out/{index:06}.png\" --report report.jsonl --resume
   marraztu batch --list list.csv --shard 3/64 --report report-3.jsonl
+  marraztu batch --list list.csv --views 100 --out \"shards/{shard:06}.tar\" --shard 3/64 --resume
   find . -name \"*.obj\" | marraztu batch --list - --views front,right,top,iso
 
 Exit status: 0 if all pictures are there, 1 if some are missing, 2 for invalid arguments, 4 with
@@ -114,10 +121,14 @@ pub(crate) struct Batch {
     /// NeRF (.json) [default: the view of the other options]
     #[arg(long, value_name = "VIEWS", allow_negative_numbers = true)]
     views: Option<String>,
-    /// The names of the pictures, or the folder of a data set [default: {stem}.{ext}, or
-    /// {stem}-{view:03}.{ext} for several views, in the current folder]
+    /// The names of the pictures; of archives for WebDataset, such as "shards/{shard:06}.tar"; or
+    /// the folder of a data set [default: {stem}.{ext}, or {stem}-{view:03}.{ext} for several
+    /// views, in the current folder]
     #[arg(short, long, value_name = "TEMPLATE")]
     out: Option<String>,
+    /// Number of pictures in an archive
+    #[arg(long, value_name = "N", default_value_t = 1000, value_parser = per_tar)]
+    per_tar: usize,
     #[arg(long, value_name = "FORMAT", help = format_help(), default_value = "png")]
     #[arg(hide_default_value = true, value_parser = format)]
     format: &'static str,
@@ -196,7 +207,7 @@ pub(super) fn batch(arguments: Box<Batch>) -> Result<(), Failure> {
     check_files(&arguments, &name, &plan, &rows)?;
     drop(rows);
     let studio = Arc::new(Studio::new(plan, Arc::clone(&arguments)));
-    let mut results = Results::begin(&arguments, name, studio.plan())?;
+    let mut results = Results::begin(&arguments, name, &studio)?;
     let signal = watched_signals();
     silence_panics();
     let outcomes = start(&studio, arguments.threads())?;
@@ -204,8 +215,9 @@ pub(super) fn batch(arguments: Box<Batch>) -> Result<(), Failure> {
         results.meter.tick();
         outcome.map_or(Ok(true), |outcome| results.add(outcome))
     });
-    let Results { meter, reporter, cameras, tables, mut done, repaired, .. } = results;
+    let Results { meter, reporter, cameras, tables, tars, mut done, repaired, .. } = results;
     meter.finish();
+    tars.map_or(Ok(()), Tars::finish)?;
     let counts = reporter.finish()?;
     tables.map_or(Ok(()), Tables::write)?;
     cameras.write()?;
@@ -234,6 +246,7 @@ struct Results<'a> {
     cameras: Cameras,
     /// The tables of a data set.
     tables: Option<Tables>,
+    tars: Option<Tars>,
     /// The numbers and positions of finished jobs, for contact sheets.
     done: Vec<(usize, usize)>,
     has_sheets: bool,
@@ -243,7 +256,8 @@ struct Results<'a> {
 }
 
 impl<'a> Results<'a> {
-    fn begin(arguments: &Batch, name: String, plan: &'a Plan) -> Result<Self, Failure> {
+    fn begin(arguments: &Batch, name: String, studio: &'a Studio) -> Result<Self, Failure> {
+        let plan = studio.plan();
         let (report, times) = (arguments.report.as_deref(), arguments.times.as_deref());
         let folder = Path::new(arguments.out.as_deref().unwrap_or_default());
         let earlier = match arguments.dataset {
@@ -255,6 +269,9 @@ impl<'a> Results<'a> {
             reporter: Reporter::begin(plan, report, times)?,
             cameras: Cameras::new(name, earlier),
             tables: arguments.dataset.and_then(|dataset| Tables::of(dataset, folder)),
+            tars: plan.tars().zip(studio.earlier_tars()).map(|(names, earlier)| {
+                Tars::new(Arc::clone(names), plan.all, Arc::clone(earlier))
+            }),
             done: Vec::new(),
             has_sheets: arguments.sheet.is_some(),
             stops: arguments.stop,
@@ -267,6 +284,11 @@ impl<'a> Results<'a> {
         self.meter.add(&outcome);
         self.reporter.add(&outcome)?;
         let job = &outcome.job;
+        if let (Some(tars), false) = (&mut self.tars, outcome.result == Err(Fault::Cancelled)) {
+            let drawn = outcome.result.as_mut().ok();
+            let members = drawn.map(|drawn| std::mem::take(&mut drawn.members));
+            tars.add(job.index, members.unwrap_or_default())?;
+        }
         let Ok(drawn) = &mut outcome.result else { return Ok(!self.stops) };
         if self.has_sheets {
             self.done.push((job.index, job.position));
@@ -283,6 +305,12 @@ impl<'a> Results<'a> {
 }
 
 impl Batch {
+    /// Returns the template of `--out`, if it names archives.
+    fn tar_template(&self) -> Option<&str> {
+        let out = self.out.as_deref().filter(|_| self.dataset.is_none());
+        out.filter(|out| TarNames::are_in(out))
+    }
+
     /// Returns whether the lights of a model stay in all of its views.
     const fn has_fixed_lights(&self) -> bool {
         self.dataset.is_some() && !self.lights_follow_camera
@@ -312,7 +340,8 @@ fn check_files(arguments: &Batch, cameras: &str, plan: &Plan, rows: &Rows) -> Re
     let reports: Vec<&PathBuf> = arguments.report.iter().chain(&arguments.times).collect();
     let mut folders = BTreeSet::new();
     let has_layers = |row: &Arc<Row>| row.kind.parsed.options.layers.are_given();
-    let has_tables = matches!(arguments.dataset, Some(Dataset::Bop | Dataset::Coco));
+    let has_tables =
+        matches!(arguments.dataset, Some(Dataset::Bop | Dataset::Coco)) || plan.tars().is_some();
     if !has_tables && plan.rows().iter().any(has_layers) {
         let with_layers = plan.jobs().filter(|job| job.options().layers.are_given());
         folders.extend(with_layers.map(|job| job.cameras_folder(arguments.dataset).to_owned()));
@@ -325,6 +354,9 @@ fn check_files(arguments: &Batch, cameras: &str, plan: &Plan, rows: &Rows) -> Re
     };
     reports.into_iter().try_for_each(|path| check_report(path, &inputs))?;
     if let Some(grid) = arguments.sheet {
+        if plan.tars().is_some() {
+            return Err(usage("--sheet shows files, and --out names archives"));
+        }
         check_sheets(grid, &arguments.sheets, plan)?;
     }
     if let Some(dataset) = arguments.dataset {
@@ -474,6 +506,11 @@ fn endings() -> String {
     let endings = PICTURE_FORMATS.iter().map(|format| format.endings[0]);
     let endings: Vec<&str> = endings.chain(NUMBER_ENDINGS).collect();
     endings.join(", ").replacen("png", "png*", 1)
+}
+
+fn per_tar(text: &str) -> Result<usize, String> {
+    let pictures = text.parse().ok().filter(|pictures| (1..=1_000_000).contains(pictures));
+    pictures.ok_or_else(|| "write a number of pictures from 1 to 1000000".to_owned())
 }
 
 fn limit(text: &str) -> Result<Duration, String> {

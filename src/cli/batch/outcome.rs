@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::dataset::DatasetImage;
 use super::jobs::Job;
+use super::tars::Member;
 use crate::cli::cameras::CameraFrame;
 use crate::cli::failure::Failure;
 
@@ -96,6 +97,8 @@ pub(super) struct Drawn {
     pub(super) image: Option<Box<DatasetImage>>,
     /// The findings of the model, if a report needs them.
     pub(super) findings: Vec<String>,
+    /// The files in an archive.
+    pub(super) members: Vec<Member>,
     /// Whether an earlier run has drawn it.
     pub(super) unchanged: bool,
 }

@@ -115,7 +115,7 @@ fn suspects<'a>(rows: &'a [Arc<Row>], places: &mut Places) -> Vec<&'a Row> {
     let mut names = Keys::default();
     match &first.kind.names {
         // Their names have the number of the row or of the picture.
-        Names::Dataset(Dataset::Bop | Dataset::Coco, _) => return Vec::new(),
+        Names::Dataset(Dataset::Bop | Dataset::Coco, _) | Names::Tars(_) => return Vec::new(),
         Names::Template(template) if is_one && template.shows_index() => return Vec::new(),
         Names::Dataset(Dataset::Nerf, _) => {
             let keys: Vec<u64> = rows.iter().map(|row| names.hash(&stem(&row.file))).collect();
@@ -313,6 +313,10 @@ impl Places {
 /// Rejects pictures that would replace a file that the model of any row refers to. Pictures of
 /// earlier runs carry stamps; only other files take the time to look for all that is read.
 pub(super) fn check_inputs(plan: &Plan, rows: &Rows) -> Result<(), Failure> {
+    // No model and no texture is an archive.
+    if let Some(tars) = plan.tars() {
+        return tars.check(plan.indexes());
+    }
     let is_foreign = |path: &PathBuf| path.exists() && io::read_stamp(path).is_none();
     let outputs = plan.rows().iter().flat_map(|row| paths(row)).map(|(_, path)| path);
     let foreign: Vec<PathBuf> = outputs.filter(is_foreign).collect();

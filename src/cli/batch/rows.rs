@@ -13,6 +13,7 @@ use super::Batch;
 use super::dataset::Dataset;
 use super::list::{self, Entry, Line, expanded, read_list};
 use super::options::{OptionParser, OptionTexts, Parsed, Value, WrongOption};
+use super::tars::TarNames;
 use super::template::{Fields, Template};
 use super::views::{CameraView, own_view, parse_views};
 use crate::cli::failure::{Failure, usage};
@@ -47,17 +48,26 @@ pub(super) enum Names {
     Template(Arc<Template>),
     /// A data set in a folder.
     Dataset(Dataset, PathBuf),
+    /// Archives.
+    Tars(Arc<TarNames>),
 }
 
 impl Names {
-    /// Returns whether the names have the same form: one template, or a data set.
+    /// Returns the names of archives.
+    pub(super) const fn tars(&self) -> Option<&Arc<TarNames>> {
+        match self {
+            Self::Tars(tars) => Some(tars),
+            Self::Template(_) | Self::Dataset(..) => None,
+        }
+    }
+
+    /// Returns whether the names have the same form: one template, a data set, or archives.
     pub(super) fn is_same(&self, other: &Self) -> bool {
         match (self, other) {
             (Self::Template(a), Self::Template(b)) => Arc::ptr_eq(a, b),
             (Self::Dataset(a, _), Self::Dataset(b, _)) => a == b,
-            (Self::Template(_), Self::Dataset(..)) | (Self::Dataset(..), Self::Template(_)) => {
-                false
-            }
+            (Self::Tars(a), Self::Tars(b)) => a == b,
+            (Self::Template(_) | Self::Dataset(..) | Self::Tars(_), _) => false,
         }
     }
 }
@@ -87,6 +97,7 @@ impl Row {
             match &self.kind.names {
                 Names::Template(template) => template.path(&fields),
                 Names::Dataset(dataset, folder) => dataset.path(folder, &fields, self.number),
+                Names::Tars(tars) => tars.member(fields.index, &self.kind.field(layer)),
             }
         };
         let options = &self.kind.parsed.options;
@@ -97,6 +108,11 @@ impl Row {
             }
         }
         Ok(files)
+    }
+
+    /// Returns the file that describes a picture in an archive.
+    pub(super) fn description(&self, view: usize) -> Option<PathBuf> {
+        self.kind.names.tars().map(|tars| tars.member(self.first + view, "json"))
     }
 
     /// Checks that the formats of all pictures can hold them.
@@ -120,8 +136,18 @@ impl RowKind {
     fn fixes_extension(&self) -> bool {
         match &self.names {
             Names::Template(template) => template.fixes_extension(),
-            Names::Dataset(..) => true,
+            Names::Dataset(..) | Names::Tars(_) => true,
         }
+    }
+
+    /// Returns whether each layer has its own file, if `--out` does not say so.
+    fn is_by_layer(&self) -> bool {
+        self.parsed.options.layers.are_given() && self.ext != "exr"
+    }
+
+    /// Returns the end of the name of a layer in an archive: "depth.npy", or "png".
+    fn field(&self, layer: &str) -> String {
+        if self.is_by_layer() { format!("{layer}.{}", self.ext) } else { self.ext.to_owned() }
     }
 }
 
@@ -170,6 +196,8 @@ struct RowReader {
     own_view: Arc<Vec<CameraView>>,
     base_views: Option<String>,
     base_out: Option<String>,
+    /// The names of archives, if `--out` names some.
+    tars: Option<Arc<TarNames>>,
     dataset: Option<Dataset>,
     /// The numbers of rows and pictures so far.
     rows: usize,
@@ -195,6 +223,7 @@ impl RowReader {
             own_view: Arc::new(own_view()),
             base_views: arguments.views.clone(),
             base_out: arguments.out.clone(),
+            tars: None,
             dataset: arguments.dataset,
             rows: 0,
             pictures: 0,
@@ -211,7 +240,11 @@ impl RowReader {
         if let Some(text) = &arguments.out {
             check(check_scheme(text), "out")?;
         }
-        if let (Some(text), None) = (&arguments.out, arguments.dataset) {
+        if let Some(text) = arguments.tar_template() {
+            let tars = TarNames::parse(text, arguments.per_tar);
+            reader.tars =
+                Some(Arc::new(tars.map_err(|reason| usage(&format!("--out: {reason}")))?));
+        } else if let (Some(text), None) = (&arguments.out, arguments.dataset) {
             check(once(&mut reader.templates, text, Template::parse).map(drop), "out")?;
         }
         Ok(reader)
@@ -263,6 +296,10 @@ impl RowReader {
         let (mut views, mut out) = (self.base_views.clone(), self.base_out.clone());
         for (name, value) in values {
             match (name.as_str(), value) {
+                ("out", _) if self.tars.is_some() => {
+                    let reason = "--out names archives for all pictures".to_owned();
+                    return Err((Some("out".to_owned()), reason));
+                }
                 (name @ ("out" | "layers" | "ids"), _) if self.dataset.is_some() => {
                     let reason = "a data set has its own folder and layers".to_owned();
                     return Err((Some(name.to_owned()), reason));
@@ -290,14 +327,15 @@ impl RowReader {
             Some(text) => once(&mut self.views, &text, parse_views).map_err(column("views"))?,
             None => Arc::clone(&self.own_view),
         };
-        let names = match (self.dataset, out) {
-            (Some(dataset), out) => Names::Dataset(dataset, out.unwrap_or_default().into()),
-            (None, Some(text)) => {
+        let names = match (&self.tars, self.dataset, out) {
+            (Some(tars), ..) => Names::Tars(Arc::clone(tars)),
+            (None, Some(dataset), out) => Names::Dataset(dataset, out.unwrap_or_default().into()),
+            (None, None, Some(text)) => {
                 check_scheme(&text).map_err(column("out"))?;
                 let template = once(&mut self.templates, &text, Template::parse);
                 Names::Template(template.map_err(column("out"))?)
             }
-            (None, None) => {
+            (None, None, None) => {
                 let by_layer = parsed.options.layers.are_given() && self.format != "exr";
                 Names::Template(Arc::new(Template::of_views(views.len(), by_layer)))
             }

@@ -5,7 +5,8 @@
 //! by all threads. A further thread reads models ahead, so reading, drawing and encoding overlap.
 //! Pixels depend on none of this.
 
-use std::borrow::Cow;
+mod attempt;
+
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -15,30 +16,21 @@ use std::sync::mpsc::SyncSender;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
-use marraztu_core::accuracy::Shot;
-use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::base::image::Size;
 use marraztu_core::base::threads::{self, Caller};
 use marraztu_io::{self as io, Progress};
-use marraztu_render::{LayerNames, Layers, Renderer, plan_frame, without_ground_while};
+use marraztu_render::Renderer;
 use rayon::ThreadPool;
 
+use self::attempt::Attempt;
 use super::Batch;
 use super::cache::{LoadedStage, StageCache};
-use super::dataset::{self, Dataset, DatasetImage};
-use super::digest::{SourceHash, Stamper, hash_of, hash_of_file};
+use super::digest::Stamper;
 use super::estimate::Rehearsed;
 use super::jobs::{Job, Plan};
-use super::options::PictureOptions;
-use super::outcome::{Drawn, Fault, FileSum, Outcome, Spent};
-use super::report::shown;
+use super::outcome::{Fault, Outcome, Spent};
 use super::rows::Row;
-use crate::cli::cameras::CameraFrame;
-use crate::cli::failure::Failure;
-use crate::cli::fixed_lights::look_with_fixed_lights;
-use crate::cli::layers::{LayerContent, LayerFile};
-use crate::cli::render::NO_MEMORY;
-use crate::cli::render::look;
-use crate::cli::stage::Stage;
+use super::tars::EarlierTars;
 
 /// Pictures with more pixels are drawn by all threads.
 const LARGE: usize = 1 << 20;
@@ -62,22 +54,16 @@ pub(super) struct Studio {
     folders: Mutex<BTreeSet<PathBuf>>,
     /// The files being read, with their time limits.
     reading: Mutex<Vec<(Option<Instant>, Progress)>>,
-}
-
-/// A picture that is being drawn.
-struct Attempt<'a> {
-    studio: &'a Studio,
-    job: &'a Job,
-    until: Option<Instant>,
-    /// The hashes of the loaded files.
-    source: Option<SourceHash>,
-    spent: Spent,
+    /// The archives of an earlier run, if pictures are written to archives.
+    earlier_tars: Option<Arc<EarlierTars>>,
 }
 
 impl Studio {
     pub(super) fn new(plan: Plan, arguments: Arc<Batch>) -> Self {
+        let earlier_tars = plan.tars().map(|names| Arc::new(EarlierTars::new(Arc::clone(names))));
         Self {
             plan,
+            earlier_tars,
             next: AtomicUsize::new(0),
             stopped: AtomicBool::new(false),
             cache: StageCache::new(arguments.memory),
@@ -92,6 +78,11 @@ impl Studio {
     /// Returns the pictures to draw.
     pub(super) const fn plan(&self) -> &Plan {
         &self.plan
+    }
+
+    /// Returns the archives of an earlier run, if pictures are written to archives.
+    pub(super) const fn earlier_tars(&self) -> Option<&Arc<EarlierTars>> {
+        self.earlier_tars.as_ref()
     }
 
     /// Returns whether a report needs hashes and findings.
@@ -142,8 +133,7 @@ impl Studio {
                 Err(Fault::Program(panic))
             });
             let Attempt { source, spent, .. } = attempt;
-            // All pictures of a model follow each other, so no other one needs it.
-            if self.plan.end_of_model(number) == number + 1 {
+            if self.plan.is_last_of_model(number) {
                 self.cache.forget(&job.row.file);
             }
             if result.as_ref().is_err_and(|fault| *fault != Fault::Cancelled) {
@@ -230,11 +220,14 @@ impl Studio {
 
     /// Returns the stamp of an earlier run, if it is right.
     fn finished(&self, job: &Job) -> Option<String> {
-        let found = io::read_stamp(job.out())?;
+        let stamp = |path: &Path| match &self.earlier_tars {
+            Some(tars) => io::stamp_of(&tars.member(job, path)?.1),
+            None => io::read_stamp(path),
+        };
+        let found = stamp(job.out())?;
         let hash = found.split(' ').next()?.to_owned();
         let layers = &job.files[1..];
-        let is_whole =
-            layers.iter().all(|file| io::read_stamp(&file.path).as_ref() == Some(&found));
+        let is_whole = layers.iter().all(|file| stamp(&file.path).as_ref() == Some(&found));
         let source = if is_whole { self.stamper.known(&job.row) } else { None };
         let stamp = source.map(|source| self.stamper.stamp(job, &source));
         (Some(hash) == stamp).then_some(found)
@@ -273,235 +266,6 @@ impl Studio {
         lock().insert(folder.to_owned());
         Ok(())
     }
-}
-
-impl Attempt<'_> {
-    /// Draws and writes the picture, unless it is up to date.
-    fn picture(&mut self, renderer: &mut Renderer) -> Result<Drawn, Fault> {
-        let (studio, job) = (self.studio, self.job);
-        let folders = job.files.iter().map(|file| file.path.parent().unwrap_or(Path::new("")));
-        if studio.arguments.resume
-            && let Some(stamp) = studio.finished(job)
-        {
-            // Whole files are read, and models with findings loaded, only for a report.
-            folders.clone().try_for_each(|folder| studio.prepare_folder(folder))?;
-            let has_findings = !stamp.ends_with(" 0");
-            return self.unchanged(has_findings);
-        }
-        let (stage, findings) = self.stage()?;
-        let sources = stage.sources(std::slice::from_ref(&job.row.file));
-        for file in &job.files {
-            sources.spare(&file.path).map_err(|error| output(&error))?;
-        }
-        folders.clone().try_for_each(|folder| studio.prepare_folder(folder))?;
-        for file in &job.files {
-            io::check_replaced(&file.path).map_err(|error| output(&error))?;
-        }
-        let contents = self.contents(renderer, &stage, findings.len())?;
-        let image = self.dataset_image(renderer, &stage)?;
-        let begin = Instant::now();
-        for (file, content) in job.files.iter().zip(&contents) {
-            io::save_encoded(&file.path, content).map_err(|error| output(&error))?;
-        }
-        self.spent.encode += begin.elapsed();
-        let sum = |(file, content): (&LayerFile, &Vec<u8>)| FileSum {
-            out: shown(&file.path),
-            sha256: studio.reports().then(|| hash_of(content)),
-            bytes: content.len() as u64,
-        };
-        let files = job.files.iter().zip(&contents).map(sum).collect();
-        let camera = self.camera(&stage);
-        Ok(Drawn { files, camera, image, findings, unchanged: false })
-    }
-
-    /// Draws and encodes the picture, unless it is up to date. Returns the bytes of its files.
-    fn rehearsed(&mut self, renderer: &mut Renderer) -> Result<u64, Fault> {
-        if self.studio.is_up_to_date(self.job) {
-            return Ok(0);
-        }
-        let (stage, findings) = self.stage()?;
-        let contents = self.contents(renderer, &stage, findings.len())?;
-        let begin = Instant::now();
-        let masks = self.masks(renderer, &stage)?.map(|(files, _)| files);
-        self.spent.draw += begin.elapsed();
-        let masks = masks.iter().flatten().map(|(_, content)| content);
-        Ok(contents.iter().chain(masks).map(|content| content.len() as u64).sum())
-    }
-
-    /// Draws the masks of a data set, and describes the picture for its tables.
-    fn masks(
-        &self,
-        renderer: &mut Renderer,
-        stage: &Stage,
-    ) -> Result<Option<(Vec<dataset::File>, DatasetImage)>, Fault> {
-        let (studio, job) = (self.studio, self.job);
-        let Some(dataset @ (Dataset::Bop | Dataset::Coco)) = studio.arguments.dataset else {
-            return Ok(None);
-        };
-        let wanted = || !studio.is_stopped();
-        let shot = stage.shot(job.size());
-        dataset::image(dataset, renderer, (job, &shot), &wanted).map(Some)
-    }
-
-    /// Writes the masks of a data set, and describes the picture for its tables.
-    fn dataset_image(
-        &self,
-        renderer: &mut Renderer,
-        stage: &Stage,
-    ) -> Result<Option<Box<DatasetImage>>, Fault> {
-        let (studio, job) = (self.studio, self.job);
-        let Some((files, image)) = self.masks(renderer, stage)? else { return Ok(None) };
-        for (path, content) in files {
-            studio.prepare_folder(path.parent().unwrap_or(Path::new("")))?;
-            io::check_replaced(&path).map_err(|error| output(&error))?;
-            io::save_encoded(&path, &content).map_err(|error| output(&error))?;
-        }
-        if studio.arguments.dataset == Some(Dataset::Bop) {
-            dataset::remove_masks(job, image.objects.len());
-        }
-        Ok(Some(Box::new(image)))
-    }
-
-    /// Describes the camera, if the picture has layers.
-    fn camera(&self, stage: &Stage) -> Option<Box<CameraFrame>> {
-        let job = self.job;
-        let options = &job.options().layers;
-        if !options.are_given() {
-            return None;
-        }
-        let names = options.has_ids().then(|| LayerNames::of(&stage.scene));
-        let scene = (shown(&job.row.file), &*job.camera().name);
-        let shot = stage.shot(job.size());
-        let folder = job.cameras_folder(self.studio.arguments.dataset);
-        let frame = CameraFrame::new(&shot, (folder, &job.files), scene, (options, names.as_ref()));
-        Some(Box::new(frame))
-    }
-
-    /// Returns the result of a picture that an earlier run has drawn.
-    fn unchanged(&mut self, has_findings: bool) -> Result<Drawn, Fault> {
-        let mut drawn = Drawn { unchanged: true, ..Drawn::default() };
-        let reports = self.studio.reports();
-        if reports {
-            let sum = |file: &LayerFile| -> std::io::Result<FileSum> {
-                let (out, bytes) = (shown(&file.path), file.path.metadata()?.len());
-                Ok(FileSum { out, sha256: Some(hash_of_file(&file.path)?), bytes })
-            };
-            let sums = self.job.files.iter().map(|file| {
-                let shown = file.path.display();
-                sum(file).map_err(|error| Fault::Output(format!("{shown}: {error}")))
-            });
-            drawn.files = sums.collect::<Result<_, _>>()?;
-        }
-        // The cameras of a picture with layers are written again: another shard may have drawn it.
-        let has_layers = self.job.options().layers.are_given();
-        if (reports && has_findings) || has_layers {
-            let (stage, findings) = self.stage()?;
-            drawn.camera = self.camera(&stage);
-            drawn.findings = if reports { findings } else { Vec::new() };
-        }
-        Ok(drawn)
-    }
-
-    /// Returns the scene with its camera, and the findings.
-    fn stage(&mut self) -> Result<(Stage, Vec<String>), Fault> {
-        let begin = Instant::now();
-        let (row, job) = (&self.job.row, self.job);
-        let loaded = self.studio.scene(row, self.until);
-        self.spent.load += begin.elapsed();
-        let loaded = loaded?;
-        self.source = Some(loaded.source.clone());
-        let mut stage = loaded.stage.clone();
-        let options = job.options();
-        let failed = |failure: Failure| Fault::of(&failure);
-        let aim = job.camera().aim.at(job.size());
-        let look = match self.studio.arguments.has_fixed_lights() {
-            true => look_with_fixed_lights,
-            false => look,
-        };
-        look(&mut stage, &options.scene.seeing, &aim).map_err(failed)?;
-        if let Some(dataset) = self.studio.arguments.dataset {
-            dataset.check_projection(stage.view.projection)?;
-        }
-        stage.settings = options.accuracy.of_file(&stage.settings);
-        let findings = stage.findings.iter().map(ToString::to_string);
-        let findings = findings.chain(stage.notes.iter().cloned()).collect();
-        Ok((stage, findings))
-    }
-
-    /// Draws the picture and its layers, and encodes its files.
-    fn contents(
-        &mut self,
-        renderer: &mut Renderer,
-        stage: &Stage,
-        findings: usize,
-    ) -> Result<Vec<Vec<u8>>, Fault> {
-        let (studio, job) = (self.studio, self.job);
-        let begin = Instant::now();
-        let pool = studio.pool_for(job.size());
-        // Waiting for other pictures does not count.
-        let until = self.until.map(|until| until + begin.elapsed());
-        let begin = Instant::now();
-        let shot = stage.shot(job.size());
-        let options = &job.options();
-        let layers = options.layers.set();
-        if !layers.is_empty() {
-            layers.check_memory(shot.size).map_err(|_full| Fault::Program(NO_MEMORY.to_owned()))?;
-        }
-        let stopped = &studio.stopped;
-        let is_late = || until.is_some_and(|until| until < Instant::now());
-        let wanted = || !stopped.load(Ordering::Relaxed) && !is_late();
-        let picture = match pool.as_ref().and_then(|pool| pool.as_ref()) {
-            Some(pool) => pool.install(|| draw(renderer, &shot, options, &wanted)),
-            None => draw(renderer, &shot, options, &wanted),
-        };
-        drop(pool);
-        self.spent.draw += begin.elapsed();
-        let stopped = || match studio.is_stopped() {
-            true => Fault::Cancelled,
-            false => Fault::Timeout(shown(&job.row.file)),
-        };
-        let (color, numbers) = picture.filter(|_| !is_late()).ok_or_else(stopped)?;
-        let begin = Instant::now();
-        let source = self.source.as_ref().expect("the files are hashed before they are loaded");
-        let hash = studio.stamper.stamp(job, source);
-        // The number of findings tells a later run whether its report needs the model.
-        let stamp = format!("{hash} {findings}");
-        let content =
-            LayerContent::new(&shot, color.as_deref(), numbers.as_ref(), options.transparent);
-        let contents = job.files.iter().map(|file| {
-            let encoded = file.encode(&content, &options.layers.png(), Some(&stamp));
-            encoded.map_err(|reason| Fault::Input(format!("{}: {reason}", file.path.display())))
-        });
-        let contents = contents.collect();
-        self.spent.encode += begin.elapsed();
-        contents
-    }
-}
-
-fn output(error: &io::SaveError) -> Fault {
-    Fault::Output(error.to_string())
-}
-
-/// Draws a picture and its layers, unless they are no longer wanted.
-fn draw<'a>(
-    renderer: &'a mut Renderer,
-    shot: &Shot,
-    options: &PictureOptions,
-    wanted: &(dyn Fn() -> bool + Sync),
-) -> Option<(Option<Cow<'a, Picture>>, Option<Layers>)> {
-    let PictureOptions { layers, transparent, .. } = options;
-    let numbers = match layers.set() {
-        set if set.is_empty() => None,
-        set => Some(renderer.layers_while(shot, set, layers.normal_space(), wanted).ok()?),
-    };
-    let color = match (layers.has_color(), transparent) {
-        (false, _) => None,
-        (true, true) => Some(Cow::Owned(without_ground_while(renderer, shot, wanted).ok()?)),
-        (true, false) => {
-            Some(Cow::Borrowed(renderer.render_while(&plan_frame(shot), wanted).ok()?))
-        }
-    };
-    Some((color, numbers))
 }
 
 thread_local! {
