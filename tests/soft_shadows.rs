@@ -1,5 +1,5 @@
-//! Lights with an extent: borders as wide and as dark as geometry says, the same by every way of
-//! drawing, and no work for lights without an extent.
+//! Lights with an extent, and the sky: borders as wide and as dark as geometry says, the same by
+//! every way of drawing, and no work for lights without an extent.
 //!
 //! Catches: borders of another width, light that is lost or gained by sampling, a size that works
 //! without shadows, other shadows in f32 than in f64, old shadows after a change, points that shade
@@ -14,7 +14,9 @@ use glam::{DMat4, DVec3};
 use marraztu_core::accuracy::{
     Arithmetic, LightAt, LightSamples, Samples, Settings, ShadowMethod, Shot,
 };
+use marraztu_core::base::color::Color;
 use marraztu_core::base::image::{Picture, Size};
+use marraztu_core::edit::lighting;
 use marraztu_core::scene::{
     Attenuation, Light, LightId, LightKind, List, Material, MaterialChoice, ObjectId, Projection,
     Scene, Sides, Tracked, View,
@@ -241,4 +243,78 @@ fn the_plan_tells_soft_shadows_from_hard_ones() {
     };
     assert!(of(Settings::default()).iter().all(|why| why == "soft, 16 samples"));
     assert!(of(with(LightSamples::One)).iter().all(|why| why == "exact"));
+}
+
+/// Sets the only light of a scene to a sky.
+fn sky(scene: &mut Scene, above: u8, below: u8, shadows: bool) {
+    let kind = LightKind::Sky { ground: Color([below; 3]) };
+    let color = Color([above; 3]);
+    let light = Light { shadows, color, ..Light::new("sky", 0, kind) };
+    scene.lights = List::from_iter([(LightId(500), light)]);
+}
+
+#[test]
+fn a_surface_that_nothing_hides_sees_the_parts_of_the_sky_by_its_tilt() {
+    for degrees in [0.0_f64, 35.0, 90.0, 160.0] {
+        // At 0 degrees the paper faces the observer and the horizon, at 90 the zenith.
+        let turn = DMat4::from_rotation_x(-degrees.to_radians() * 0.8);
+        let (mut scene, view) = scene(&[(square(), turn * at(300.0, 0.0, 0.0, 0.0))]);
+        edit(&mut scene, ObjectId(10), |object| {
+            object.material = MaterialChoice::Own(Material::matte([0.0; 3], [0.8; 3]));
+            object.sides = Sides::Two;
+        });
+        let view = View { marks: false, ..view };
+        for shadows in [false, true] {
+            sky(&mut scene, 200, 40, shadows);
+            let [grey, ..] = draw(&scene, &view, &Settings::default(), 64).pixel(32, 32);
+            let normal = turn.transform_vector3(DVec3::Z);
+            let up = if normal.z < 0.0 { -normal.y } else { normal.y };
+            let expected = 0.8 * (40.0 + (200.0 - 40.0) * (1.0 + up) / 2.0);
+            assert!((f64::from(grey) - expected).abs() <= 1.0, "{degrees}: {grey}, {expected}");
+        }
+    }
+}
+
+#[test]
+fn a_long_wall_hides_the_part_of_the_sky_that_geometry_says() {
+    const SIDE: usize = 200;
+    const HEIGHT: f64 = 200.0;
+    // A wall along Y that rises from the paper towards the observer, left of the middle.
+    let wall = DMat4::from_translation(DVec3::new(0.0, 0.0, HEIGHT / 2.0))
+        * DMat4::from_rotation_y(std::f64::consts::FRAC_PI_2)
+        * DMat4::from_scale(DVec3::new(HEIGHT / 2.0, 30_000.0, 1.0));
+    let (mut scene, view) = scene(&[(square(), at(3000.0, 0.0, 0.0, 0.0)), (square(), wall)]);
+    for id in [10, 11] {
+        edit(&mut scene, ObjectId(id), |object| {
+            object.material = MaterialChoice::Own(Material::matte([0.0; 3], [0.8; 3]));
+            object.sides = Sides::Two;
+        });
+    }
+    let view = View { projection: Projection::Orthographic, marks: false, ..view };
+    sky(&mut scene, 255, 255, true);
+    let picture = draw(&scene, &view, &with(LightSamples::TwoFiftySix), SIDE);
+    for x in (SIDE / 2 + 2..SIDE).step_by(7) {
+        let place = place_of(&scene, &view, SIDE, x);
+        let expected = 0.8 * (1.0 + place / place.hypot(HEIGHT)) / 2.0;
+        let got = column(&picture, x);
+        assert!((got - expected).abs() < 0.01, "{place}: {got}, not {expected}");
+    }
+}
+
+#[test]
+fn a_studio_replaces_the_lights_and_leaves_no_surface_white() {
+    let (mut scene, view) = scene(&[(ball(16), at(60.0, 0.0, 0.0, 0.0))]);
+    let paint = MaterialChoice::Own(Material::matte([0.2; 3], [1.0; 3]));
+    edit(&mut scene, ObjectId(10), |object| object.material = paint);
+    let before = scene.clone();
+    let command = lighting::studio(&scene, &view).unwrap();
+    let undo = command.apply(&mut scene).unwrap();
+    assert_eq!(scene.lights.len(), 2);
+    assert!(scene.lights.iter().all(|(_, light)| light.is_soft()));
+    let view = View { marks: false, ..view };
+    let picture = draw(&scene, &view, &Settings::default(), 96);
+    let most = picture.pixels().iter().flat_map(|pixel| &pixel[..3]).max().unwrap();
+    assert!((200..=250).contains(most), "{most}");
+    undo.apply(&mut scene).unwrap();
+    assert_eq!(scene.lights, before.lights);
 }

@@ -142,6 +142,7 @@ pub(crate) struct LightValue {
     color: [u8; 3],
     shadows: bool,
     size: f64,
+    ground: [u8; 3],
     position: Option<[f64; 3]>,
     direction: Option<[f64; 3]>,
     angle: f64,
@@ -160,6 +161,7 @@ impl LightValue {
         let position = self.position.map(DVec3::from_array);
         let kind = match (&*self.kind, position, direction) {
             ("ambient", None, None) => LightKind::Ambient,
+            ("sky", None, None) => LightKind::Sky { ground: Color(self.ground) },
             ("sun", None, Some(direction)) => LightKind::Sun { direction: Tracked::new(direction) },
             ("bulb", Some(position), None) => {
                 LightKind::Bulb { position: Tracked::new(position), orbit: Orbit::default() }
@@ -175,10 +177,10 @@ impl LightValue {
                 let half_aperture = self.angle.to_degrees();
                 LightKind::Spot { owner, half_aperture, exponent: self.exponent }
             }
-            ("ambient" | "sun" | "bulb", _, _) => {
+            ("ambient" | "sky" | "sun" | "bulb", _, _) => {
                 return Err(invalid("a sun has a direction, a bulb a position"));
             }
-            _ => return Err(invalid("the kinds are ambient, sun, bulb and spot")),
+            _ => return Err(invalid("the kinds are ambient, sky, sun, bulb and spot")),
         };
         let [constant, linear, quadratic] = self.attenuation;
         let attenuation = Attenuation { constant, linear, quadratic };
@@ -209,7 +211,10 @@ impl LightValue {
             LightKind::Spot { half_aperture, exponent, .. } => {
                 (half_aperture.to_radians(), exponent)
             }
-            LightKind::Ambient | LightKind::Sun { .. } | LightKind::Bulb { .. } => (0.0, 0.0),
+            LightKind::Ambient
+            | LightKind::Sky { .. }
+            | LightKind::Sun { .. }
+            | LightKind::Bulb { .. } => (0.0, 0.0),
         };
         Self {
             kind: light.kind.info().name.to_owned(),
@@ -219,6 +224,10 @@ impl LightValue {
             size: match light.kind {
                 LightKind::Sun { .. } => light.size.to_radians(),
                 _ => light.size,
+            },
+            ground: match light.kind {
+                LightKind::Sky { ground: Color(ground) } => ground,
+                _ => [0; 3],
             },
             position: position.map(|v| v.to_array()),
             direction: direction.map(|v| v.to_array()),

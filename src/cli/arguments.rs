@@ -181,6 +181,13 @@ pub(crate) struct Seeing {
     /// The time of the scene in seconds, for objects that spin and lights that circle
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = finite)]
     pub(crate) time: Option<f64>,
+    /// The lights of models without a scene: plain*; studio, a sky with occlusion and a large lamp
+    /// with soft shadows
+    #[arg(long, hide_possible_values = true, value_name = "HOW", value_parser = choice(&[
+        ("plain", Look::Plain),
+        ("studio", Look::Studio),
+    ]))]
+    pub(crate) look: Option<Look>,
     /// The slots of the lights to switch on, as "0,2"; the others are off. "none" switches all off
     #[arg(long, value_name = "SLOTS", value_parser = slots)]
     pub(crate) lights: Option<Slots>,
@@ -276,6 +283,16 @@ const UP_AXES: [(&str, UpAxis); 6] = {
     }
     axes
 };
+
+/// The lights of models without a scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Look {
+    /// Those of the first scene.
+    #[default]
+    Plain,
+    /// Those of a studio.
+    Studio,
+}
 
 /// The selection of lights that cast shadows.
 #[derive(Clone, Debug, PartialEq, Eq)]

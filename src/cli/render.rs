@@ -20,7 +20,7 @@ use marraztu_render::{
 };
 
 use super::arguments::{
-    Exposure, PictureArguments, Render, SceneArguments, Seeing, ShadowSlots, Slots, Surfaces,
+    Exposure, Look, PictureArguments, Render, SceneArguments, Seeing, ShadowSlots, Slots, Surfaces,
 };
 use super::bar::Bar;
 use super::cameras::{CAMERAS, CameraFrame, Cameras, Earlier, check_cameras};
@@ -323,6 +323,11 @@ pub(super) fn look(stage: &mut Stage, seeing: &Seeing, aim: &Aim) -> Result<(), 
                 --camera",
         ));
     }
+    if seeing.look.is_some() && !stage.models_alone {
+        return Err(usage(
+            "--look works only for models without a scene, which has its own lights",
+        ));
+    }
     // Time moves what the camera frames.
     stage.view.time = seeing.time.unwrap_or(stage.view.time);
     // A camera that is asked for is the observer, even if an object was when the scene was saved.
@@ -334,6 +339,12 @@ pub(super) fn look(stage: &mut Stage, seeing: &Seeing, aim: &Aim) -> Result<(), 
         Aim::Options => aim_by_options(stage, seeing)?,
         Aim::From(from) => frame(stage, *from)?,
         Aim::Pose(pose, lens) => place_camera(stage, *pose, *lens)?,
+    }
+    // A studio is the same from everywhere.
+    if seeing.look == Some(Look::Studio)
+        && let Ok(command) = lighting::studio(&stage.scene, &stage.view)
+    {
+        stage.change(command)?;
     }
     if let Some(Slots(slots)) = &seeing.lights {
         check_slots(stage, slots, |_| true, "")?;

@@ -105,7 +105,9 @@ impl Shade {
         match &self.light {
             LightKind::Sun { direction } => -*direction.now() * 1e9,
             LightKind::Bulb { position, .. } => *position.now() - from,
-            LightKind::Ambient | LightKind::Spot { .. } => unreachable!("no such case"),
+            LightKind::Ambient | LightKind::Sky { .. } | LightKind::Spot { .. } => {
+                unreachable!("no such case")
+            }
         }
     }
 

@@ -17,7 +17,7 @@ fn a_moved_object_takes_the_tiles_of_its_shadow_and_no_others() {
             LightKind::Sun { .. } | LightKind::Bulb { .. } => {
                 lights::toggle_shadows(&scene, id).unwrap()
             }
-            LightKind::Ambient => continue,
+            LightKind::Ambient | LightKind::Sky { .. } => continue,
             LightKind::Spot { .. } => Command::Remove(ItemId::Light(id)),
         };
         command.apply(&mut scene).unwrap();
@@ -146,7 +146,10 @@ fn only_changed_shadows_are_traced_again() {
                 *position = position.replaced(*position.now() + DVec3::new(9.0, 5.0, 1.0));
                 true
             }
-            LightKind::Ambient | LightKind::Sun { .. } | LightKind::Spot { .. } => false,
+            LightKind::Ambient
+            | LightKind::Sky { .. }
+            | LightKind::Sun { .. }
+            | LightKind::Spot { .. } => false,
         });
     });
     assert!((5..60).contains(&bulb), "{bulb}% for a bulb that moves");

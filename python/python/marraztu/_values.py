@@ -105,10 +105,10 @@ class Material(NamedTuple):
 
 
 class Light(NamedTuple):
-    """A light. Build one with `ambient`, `sun`, `bulb` or `spot`."""
+    """A light. Build one with `ambient`, `sky`, `sun`, `bulb` or `spot`."""
 
     kind: str
-    """ambient, sun, bulb or spot."""
+    """ambient, sky, sun, bulb or spot."""
     name: str = ""
     color: tuple[int, int, int] = (255, 255, 255)
     shadows: bool = False
@@ -116,6 +116,8 @@ class Light(NamedTuple):
     size: float = 0.0
     """With shadows, the extent of the light, which makes them soft: the radius of a bulb or spot, or
     the angular diameter of a sun in radians."""
+    ground: tuple[int, int, int] = (0, 0, 0)
+    """Of a sky: the colour below the horizon."""
     position: Triple | None = None
     direction: Triple | None = None
     """The direction in which the light travels."""
@@ -130,6 +132,17 @@ class Light(NamedTuple):
     def ambient(cls, color: Sequence[int] | str = (255, 255, 255)) -> Light:
         """Light from everywhere."""
         return cls("ambient", "ambient", bytes_of(color))
+
+    @classmethod
+    def sky(
+        cls,
+        color: Sequence[int] | str = (255, 255, 255),
+        ground: Sequence[int] | str = (92, 84, 76),
+        *,
+        shadows: bool = False,
+    ) -> Light:
+        """Light from the sky above and the ground below; with shadows, surfaces hide it."""
+        return cls("sky", "sky", bytes_of(color), shadows, ground=bytes_of(ground))
 
     @classmethod
     def sun(

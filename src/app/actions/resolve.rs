@@ -17,8 +17,8 @@ use marraztu_core::edit::lights::{APERTURE_STEP, Channel};
 use marraztu_core::edit::several::{self, Others};
 use marraztu_core::edit::transform::Sign;
 use marraztu_core::edit::{
-    GesturePhase, Refusal, aiming, arrange, copies, framing, gizmo, items, lights, selection,
-    shapes, transform,
+    GesturePhase, Refusal, aiming, arrange, copies, framing, gizmo, items, lighting, lights,
+    selection, shapes, transform,
 };
 use marraztu_core::scene::{
     Command, Fill, Frame, ItemId, LightKind, NormalLength, Normals, ObjectId, Projection, Scene,
@@ -29,7 +29,8 @@ use marraztu_io::ExportOptions;
 type Resolved = Result<Intent, Refusal>;
 
 /// The actions that add a light with a separate position or direction, in the order of menus.
-pub(crate) const ADD_LIGHTS: [Action; 3] = [Action::AddSun, Action::AddBulb, Action::AddSpot];
+pub(crate) const ADD_LIGHTS: [Action; 4] =
+    [Action::AddSky, Action::AddSun, Action::AddBulb, Action::AddSpot];
 
 /// The actions that add an object, in the order of menus.
 pub(crate) const ADD_OBJECTS: [Action; 7] = [
@@ -133,6 +134,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::AddCylinder => add_shape(state, Shape::Cylinder),
         Action::AddTorus => add_shape(state, Shape::Torus),
         Action::AddCamera => Ok(Intent::AskCamera),
+        Action::AddSky => add_light(state, lights::sky()),
         Action::AddSun => add_light(state, lights::sun()),
         Action::AddBulb => add_light(state, lights::bulb()),
         Action::AddSpot => add_light(state, lights::spot(lights::fixed())),
@@ -255,6 +257,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         }
         Action::ApertureUp => aperture(APERTURE_STEP),
         Action::ApertureDown => aperture(-APERTURE_STEP),
+        Action::LightStudio => lighting::studio(scene, view).map(Intent::Change),
         Action::SoloLight => lights::solo(scene, view, &state.lit_before).map(Intent::Change),
         Action::ToggleAllShadows => lights::toggle_all_shadows(scene).map(Intent::Change),
         Action::ToggleShadows => lights::toggle_selected_shadows(scene, view).map(Intent::Change),

@@ -117,10 +117,15 @@ impl Action {
             Self::NewAncestor | Self::ToPanelsBack => return None,
             Self::Quit | Self::Undo | Self::Redo | Self::TakeBack | Self::Rename => return None,
             Self::Cut | Self::Copy | Self::Paste | Self::CopyMaterial => return None,
+            Self::LightStudio => return None,
             Self::Duplicate | Self::Delete | Self::Split | Self::AddCamera | Self::AddSun => {
                 return None;
             }
-            Self::AddBulb | Self::AddSpot | Self::AddObjectSpot | Self::AddCameraSpot => {
+            Self::AddSky
+            | Self::AddBulb
+            | Self::AddSpot
+            | Self::AddObjectSpot
+            | Self::AddCameraSpot => {
                 return None;
             }
             Self::AddGround | Self::AddPlane | Self::AddCube | Self::AddSphere => return None,

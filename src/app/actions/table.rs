@@ -154,6 +154,9 @@ actions! {
     AddCamera Add ONCE [Upper(Key::F)]
         "Camera..." "Asks for a material and adds a camera at the origin, looking along -Z."
         "viewpoint eye new";
+    AddSky Add ONCE []
+        "Sky" "Adds light from the sky above and the ground below."
+        "ambient occlusion hemisphere environment dome light new";
     AddSun Add ONCE []
         "Sun" "Adds a directional light, infinitely far away."
         "directional light lamp new";
@@ -408,6 +411,9 @@ actions! {
     SoloLight Light ONCE []
         "Only this light" "Switches off all lights but this one; pressed again, restores them."
         "solo isolate single mute others";
+    LightStudio Light ONCE []
+        "Studio lights" "Replaces all lights by a sky with occlusion and a large lamp with soft shadows."
+        "look ambient occlusion soft shadows beautiful render setup preset";
     FitExposure Light ONCE []
         "Fit exposure" "Sets the highest exposure that does not overexpose surfaces."
         "exposure brightness overexposed burnt white tone mapping stops levels auto";

@@ -45,7 +45,7 @@ const PARTS: [Action; 23] = [
     Action::DropToGround,
     Action::StepXUp,
     Action::AddCamera,
-    Action::AddSun,
+    Action::AddSky,
     Action::ToggleBackFaces,
     Action::ExplainPixel,
     Action::PreviousView,

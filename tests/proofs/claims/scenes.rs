@@ -171,7 +171,7 @@ fn nudged(scene: &Scene, view: &View, rng: &mut Rng) -> Scene {
             LightKind::Sun { direction } => LightKind::Sun {
                 direction: Tracked::new(*direction.now() + rng.vector(1.0) * PART),
             },
-            LightKind::Ambient => continue,
+            LightKind::Ambient | LightKind::Sky { .. } => continue,
         };
         let item = Item::Light(id, Box::new(Light { kind, ..light }));
         // A rejected change leaves the light unchanged.

@@ -15,12 +15,12 @@
 
 use glam::DVec3;
 
-use super::items::change_light;
+use super::items::{change_light, put_light};
 use super::{Change, Refusal, framing};
 use crate::base::color::Color;
 use crate::scene::{
-    Anchor, AnchorMut, Attenuation, Command, HALF_APERTURE, Light, LightOrigin, Object, ObjectId,
-    Scene, SpotOwner, Tracked, View,
+    AnchorMut, Attenuation, Command, HALF_APERTURE, ItemId, Light, LightId, LightKind, LightOrigin,
+    Object, ObjectId, Scene, SpotOwner, Tracked, View,
 };
 
 /// The distance of the first scene's camera, for which the first scene's lights are made.
@@ -68,6 +68,55 @@ pub fn models(scene: &Scene, view: &View) -> Change {
     Ok(Command::Batch(commands))
 }
 
+/// The colours of a studio: the sky, the ground below it, and a warm lamp, which is a sun of this
+/// angular diameter in degrees.
+const STUDIO_SKY: Color = Color([200, 210, 226]);
+const STUDIO_GROUND: Color = Color([158, 149, 140]);
+const STUDIO_LAMP: Color = Color([255, 247, 232]);
+const STUDIO_LAMP_ANGLE: f64 = 14.0;
+
+/// Replaces all lights by those of a studio: a sky with occlusion, and a large lamp to the left of
+/// the front with soft shadows, balanced to the materials of everything that is there.
+///
+/// # Errors
+/// If there is nothing to light.
+pub fn studio(scene: &Scene, view: &View) -> Change {
+    let ids: Vec<ObjectId> = scene.objects.ids().collect();
+    let sphere = framing::sphere(scene, view, &ids).ok_or(Refusal::NothingToFrame)?;
+    let mut lit = scene.clone();
+    let mut commands = Vec::new();
+    let mut apply = |lit: &mut Scene, command: Command| {
+        command.clone().apply(lit)?;
+        commands.push(command);
+        Ok::<(), Refusal>(())
+    };
+    for id in scene.lights.ids() {
+        apply(&mut lit, Command::Remove(ItemId::Light(id)))?;
+    }
+    let sky = LightKind::Sky { ground: STUDIO_GROUND };
+    let lamp = LightKind::Sun { direction: Tracked::new(-KEY_FROM) };
+    for (name, kind, color, size) in
+        [("sky", sky, STUDIO_SKY, 0.0), ("lamp", lamp, STUDIO_LAMP, STUDIO_LAMP_ANGLE)]
+    {
+        let light = Light { color, shadows: true, size, ..Light::new(name, 0, kind) };
+        let command = put_light(&lit, light)?;
+        apply(&mut lit, command)?;
+    }
+    let factor = balance(&lit, view, sphere.centre, sphere.radius);
+    let ids: Vec<LightId> = lit.lights.ids().collect();
+    for id in ids {
+        let dim = |light: &mut Light| {
+            light.color = dimmed(light.color, factor);
+            if let LightKind::Sky { ground } = &mut light.kind {
+                *ground = dimmed(*ground, factor);
+            }
+        };
+        let command = change_light(&lit, id, dim)?;
+        apply(&mut lit, command)?;
+    }
+    Ok(Command::Batch(commands))
+}
+
 /// Places a light of the first scene for models that are `scale` times as large.
 fn place(light: &mut Light, centre: DVec3, scale: f64) {
     // Attenuation depends on the distance, so it is scaled, too.
@@ -99,10 +148,15 @@ fn balance(scene: &Scene, view: &View, centre: DVec3, radius: f64) -> f64 {
     let ambient: f64 = scene
         .lights
         .iter()
-        .filter(|(_, light)| light.on && matches!(light.kind.anchor(), Anchor::Everywhere))
+        .filter(|(_, light)| light.on && light.kind == LightKind::Ambient)
         .map(|(_, light)| strength(light))
         .fold(0.0, f64::max);
-    let diffuse = most_diffuse(scene, view, centre, radius);
+    let skies = scene
+        .lights
+        .iter()
+        .map(|(_, light)| light)
+        .filter(|light| light.on && matches!(light.kind, LightKind::Sky { .. }));
+    let diffuse = most_diffuse(scene, view, centre, radius) + skies.map(strength).sum::<f64>();
     let brightest = scene
         .objects
         .iter()

@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::items::{change_light, check_owner, try_change_light};
 use super::{Change, Refusal, set_transform};
+use crate::base::color::Color;
 use crate::scene::{
     Aim, AnchorMut, Attenuation, Command, CommandError, HALF_APERTURE, ItemId, LightId, LightKind,
     LightNumber, Orbit, Scene, SpotOwner, Subject, Tracked, View,
@@ -38,6 +39,11 @@ impl Channel {
 /// Returns the kind of a sun that shines straight down.
 pub const fn sun() -> LightKind {
     LightKind::Sun { direction: Tracked::new(DVec3::NEG_Y) }
+}
+
+/// Returns the kind of a blue sky over a brown ground.
+pub const fn sky() -> LightKind {
+    LightKind::Sky { ground: Color([92, 84, 76]) }
 }
 
 /// Returns the kind of a bulb at the origin.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::{Anchor, LightKind, Orbit, SpotOwner, Tracked};
+use super::{LightKind, Orbit, SpotOwner, Tracked};
 use crate::base::color::Color;
 
 /// A light.
@@ -56,15 +56,16 @@ impl Attenuation {
 }
 
 impl Light {
-    /// Returns whether the light can cast shadows. Ambient light cannot.
+    /// Returns whether the light can cast shadows. Ambient light cannot; the shadows of the sky are
+    /// its occlusion.
     pub const fn can_cast_shadows(&self) -> bool {
-        !matches!(self.kind.anchor(), Anchor::Everywhere)
+        !matches!(self.kind, LightKind::Ambient)
     }
 
     /// Returns the largest valid size.
     pub const fn largest_size(&self) -> f64 {
         match self.kind {
-            LightKind::Ambient => 0.0,
+            LightKind::Ambient | LightKind::Sky { .. } => 0.0,
             LightKind::Sun { .. } => 90.0,
             LightKind::Bulb { .. } | LightKind::Spot { .. } => f64::MAX,
         }
@@ -72,7 +73,8 @@ impl Light {
 
     /// Returns whether the light casts soft shadows.
     pub fn is_soft(&self) -> bool {
-        self.shadows && self.can_cast_shadows() && self.size > 0.0
+        let is_large = self.size > 0.0 || matches!(self.kind, LightKind::Sky { .. });
+        self.shadows && self.can_cast_shadows() && is_large
     }
 
     /// Creates a white light that is on.

@@ -8,12 +8,18 @@ use glam::DVec3;
 
 use super::anchor::{Anchor, AnchorMut, Orbit, SpotOwner};
 use super::tracked::Tracked;
+use crate::base::color::Color;
 
 /// The kind of a light.
 #[derive(Clone, Debug, PartialEq)]
 pub enum LightKind {
     /// Ambient light, from everywhere.
     Ambient,
+    /// Light from the sky above and the ground below, with the light's colour above the horizon.
+    Sky {
+        /// The colour below the horizon.
+        ground: Color,
+    },
     /// Directional light, from infinitely far away.
     Sun {
         /// The direction of the light's travel, of length 1.
@@ -83,11 +89,17 @@ pub static HALF_APERTURE: LightNumber = LightNumber {
     largest: 90.0,
     get: |kind| match kind {
         LightKind::Spot { half_aperture, .. } => Some(*half_aperture),
-        LightKind::Ambient | LightKind::Sun { .. } | LightKind::Bulb { .. } => None,
+        LightKind::Ambient
+        | LightKind::Sky { .. }
+        | LightKind::Sun { .. }
+        | LightKind::Bulb { .. } => None,
     },
     get_mut: |kind| match kind {
         LightKind::Spot { half_aperture, .. } => Some(half_aperture),
-        LightKind::Ambient | LightKind::Sun { .. } | LightKind::Bulb { .. } => None,
+        LightKind::Ambient
+        | LightKind::Sky { .. }
+        | LightKind::Sun { .. }
+        | LightKind::Bulb { .. } => None,
     },
 };
 
@@ -103,11 +115,17 @@ pub static CONCENTRATION: LightNumber = LightNumber {
     largest: f64::MAX,
     get: |kind| match kind {
         LightKind::Spot { exponent, .. } => Some(*exponent),
-        LightKind::Ambient | LightKind::Sun { .. } | LightKind::Bulb { .. } => None,
+        LightKind::Ambient
+        | LightKind::Sky { .. }
+        | LightKind::Sun { .. }
+        | LightKind::Bulb { .. } => None,
     },
     get_mut: |kind| match kind {
         LightKind::Spot { exponent, .. } => Some(exponent),
-        LightKind::Ambient | LightKind::Sun { .. } | LightKind::Bulb { .. } => None,
+        LightKind::Ambient
+        | LightKind::Sky { .. }
+        | LightKind::Sun { .. }
+        | LightKind::Bulb { .. } => None,
     },
 };
 
@@ -126,6 +144,7 @@ impl LightKind {
     pub const fn info(&self) -> LightKindInfo {
         match self {
             Self::Ambient => LightKindInfo { name: "ambient", icon: "\u{e3e4}" },
+            Self::Sky { .. } => LightKindInfo { name: "sky", icon: "\u{e3e4}" },
             Self::Sun { .. } => LightKindInfo { name: "sun", icon: "\u{e518}" },
             Self::Bulb { .. } => LightKindInfo { name: "bulb", icon: "\u{e90f}" },
             Self::Spot { .. } => LightKindInfo { name: "spot", icon: "\u{e25f}" },
@@ -135,7 +154,7 @@ impl LightKind {
     /// Returns the source of the light's position and direction.
     pub const fn anchor(&self) -> Anchor<'_> {
         match self {
-            Self::Ambient => Anchor::Everywhere,
+            Self::Ambient | Self::Sky { .. } => Anchor::Everywhere,
             Self::Sun { direction } => Anchor::Direction(direction),
             Self::Bulb { position, .. } => Anchor::Position(position),
             Self::Spot { owner, .. } => Anchor::Owner(owner),
@@ -145,7 +164,7 @@ impl LightKind {
     /// Returns the source of the light's position and direction, for changing it.
     pub const fn anchor_mut(&mut self) -> AnchorMut<'_> {
         match self {
-            Self::Ambient => AnchorMut::Everywhere,
+            Self::Ambient | Self::Sky { .. } => AnchorMut::Everywhere,
             Self::Sun { direction } => AnchorMut::Direction(direction),
             Self::Bulb { position, .. } => AnchorMut::Position(position),
             Self::Spot { owner, .. } => AnchorMut::Owner(owner),
@@ -156,7 +175,7 @@ impl LightKind {
     pub const fn orbit(&self) -> Option<&Orbit> {
         match self {
             Self::Bulb { orbit, .. } => Some(orbit),
-            Self::Ambient | Self::Sun { .. } | Self::Spot { .. } => None,
+            Self::Ambient | Self::Sky { .. } | Self::Sun { .. } | Self::Spot { .. } => None,
         }
     }
 
@@ -164,7 +183,7 @@ impl LightKind {
     pub const fn orbit_mut(&mut self) -> Option<&mut Orbit> {
         match self {
             Self::Bulb { orbit, .. } => Some(orbit),
-            Self::Ambient | Self::Sun { .. } | Self::Spot { .. } => None,
+            Self::Ambient | Self::Sky { .. } | Self::Sun { .. } | Self::Spot { .. } => None,
         }
     }
 

@@ -32,6 +32,9 @@ pub(super) struct FileLight {
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum FileLightKind {
     Ambient,
+    Sky {
+        ground: [u8; 3],
+    },
     Sun {
         direction: [f64; 3],
     },
@@ -63,6 +66,7 @@ fn is_zero(size: &f64) -> bool {
 pub(super) fn file_light(id: u32, light: &Light) -> FileLight {
     let kind = match &light.kind {
         LightKind::Ambient => FileLightKind::Ambient,
+        LightKind::Sky { ground: Color(ground) } => FileLightKind::Sky { ground: *ground },
         LightKind::Sun { direction } => {
             FileLightKind::Sun { direction: direction.now().to_array() }
         }
@@ -97,6 +101,7 @@ pub(super) fn file_owner(owner: &SpotOwner) -> FileOwner {
 pub(super) fn read_light(light: &FileLight) -> Result<Light, String> {
     let kind = match light.kind {
         FileLightKind::Ambient => LightKind::Ambient,
+        FileLightKind::Sky { ground } => LightKind::Sky { ground: Color(ground) },
         FileLightKind::Sun { direction } => {
             LightKind::Sun { direction: Tracked::new(read_direction(direction)?) }
         }

@@ -17,6 +17,7 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::base::rng::Rng;
 use marraztu_core::base::threads::{self, Caller};
+use marraztu_core::edit::lighting;
 use marraztu_core::scene::{
     Command, Fill, Item, Mesh, MeshSource, Model, NONE, Normals, Object, Projection, Scene,
     SourceCorner, Texture, View,
@@ -137,6 +138,8 @@ pub fn all() -> Vec<TestPicture> {
     let soft = io::lesson_scene("soft").expect("the program has it");
     all.push(picture("soft shadows", &soft.scene, &soft.view, settings));
     all.push(picture("soft shadows in f64", &soft.scene, &soft.view, exact));
+    let studio = in_studio(&soft.scene, &soft.view);
+    all.push(picture("sky with occlusion", &studio, &soft.view, settings));
     // One picture for each choice that differs from the default and is portable.
     let bent = bent(&textured);
     for (axis, choice) in AXES.iter().flat_map(|axis| axis.choices.iter().map(move |it| (axis, it)))
@@ -153,6 +156,14 @@ pub fn all() -> Vec<TestPicture> {
         }
     }
     all
+}
+
+/// Lights a scene by a sky and a large lamp.
+fn in_studio(scene: &Scene, view: &View) -> Scene {
+    let mut scene = scene.clone();
+    let command = lighting::studio(&scene, view).expect("it has objects");
+    command.apply(&mut scene).expect("it is made for the scene");
+    scene
 }
 
 /// Stretches the first object of a scene.

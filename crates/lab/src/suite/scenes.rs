@@ -325,7 +325,7 @@ pub(super) fn soft(detail: u32) -> (Scene, View) {
     let (mut scene, view) = shadows(detail);
     let lights = scene.lights.iter().map(|(id, light)| {
         let size = match light.kind {
-            LightKind::Ambient => 0.0,
+            LightKind::Ambient | LightKind::Sky { .. } => 0.0,
             LightKind::Sun { .. } => 6.0,
             LightKind::Bulb { .. } | LightKind::Spot { .. } => 15.0,
         };

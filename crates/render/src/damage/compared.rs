@@ -154,8 +154,9 @@ fn holes_key(pipeline: &Pipeline) -> impl PartialEq + use<> {
 }
 
 fn light_key(light: &ViewLight) -> impl PartialEq + use<> {
-    let ViewLight { color, position, direction, attenuation, cos_half_aperture, exponent } = *light;
-    let vectors = [color, position, direction, attenuation].map(bits);
+    let ViewLight { color, ground, position, direction, attenuation, cos_half_aperture, exponent } =
+        *light;
+    let vectors = [color, ground, position, direction, attenuation].map(bits);
     (vectors, bits([cos_half_aperture, exponent]))
 }
 

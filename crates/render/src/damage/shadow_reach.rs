@@ -163,6 +163,7 @@ fn ends_of(source: &ShadowSource, corners: &[DVec3; 8], drawn: &[DVec3]) -> Opti
     // A margin for all rounding.
     const MORE: f64 = 1.0 + 1e-6;
     match source {
+        ShadowSource::Everywhere => None,
         ShadowSource::Direction(towards) => {
             // Distances along the rays of light: larger is farther from the light.
             let depth = |p: &DVec3| -p.dot(*towards);

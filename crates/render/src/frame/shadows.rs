@@ -32,6 +32,8 @@ pub(crate) enum ShadowSource {
     Cone { at: DVec3, direction: DVec3, cos_half_aperture: f64 },
     /// Infinitely far away in this direction.
     Direction(DVec3),
+    /// Infinitely far away in all directions.
+    Everywhere,
 }
 
 impl ShadowSource {
@@ -46,6 +48,7 @@ impl ShadowSource {
         match *self {
             Self::Point(at) => [0.0, at.x, at.y, at.z, 0.0, 0.0, 0.0, 0.0],
             Self::Direction(to) => [1.0, to.x, to.y, to.z, 0.0, 0.0, 0.0, 0.0],
+            Self::Everywhere => [3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
             Self::Cone { at, direction: d, cos_half_aperture } => {
                 [2.0, at.x, at.y, at.z, d.x, d.y, d.z, cos_half_aperture]
             }

@@ -14,6 +14,7 @@ mod bulb;
 mod phong;
 pub(crate) mod region;
 mod shader;
+mod sky;
 mod spot;
 mod sun;
 mod together;
@@ -28,6 +29,8 @@ use marraztu_core::scene::LightKind;
 
 /// The row of ambient light.
 pub(crate) static AMBIENT: LightRow = LightRow::of::<ambient::Ambient>();
+/// The row of the sky.
+pub(crate) static SKY: LightRow = LightRow::of::<sky::Sky>();
 /// The row of the sun.
 pub(crate) static SUN: LightRow = LightRow::of::<sun::Sun>();
 /// The row of bulbs.
@@ -39,6 +42,7 @@ pub(crate) static SPOT: LightRow = LightRow::of::<spot::Spot>();
 pub(crate) const fn row_of(kind: &LightKind) -> &'static LightRow {
     match kind {
         LightKind::Ambient => &AMBIENT,
+        LightKind::Sky { .. } => &SKY,
         LightKind::Sun { .. } => &SUN,
         LightKind::Bulb { .. } => &BULB,
         LightKind::Spot { .. } => &SPOT,

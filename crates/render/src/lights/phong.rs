@@ -12,6 +12,8 @@ use crate::simd::{Lanes, Number, Power, Real, Vec3};
 pub(crate) struct ViewLight {
     /// The colour, as factors.
     pub(crate) color: [f64; 3],
+    /// The colour below the horizon, of a sky.
+    pub(crate) ground: [f64; 3],
     /// The position.
     pub(crate) position: [f64; 3],
     /// The direction of its light, of length 1.
@@ -65,6 +67,8 @@ pub(crate) struct LightTerm<T> {
     pub(crate) diffuse: [T; 3],
     /// I Ks.
     pub(crate) specular: [T; 3],
+    /// Kd times the colour below the horizon.
+    pub(crate) ground: [T; 3],
     /// See [`ViewLight::position`].
     pub(crate) position: [T; 3],
     /// The direction against the light's travel.
@@ -93,6 +97,7 @@ impl<T: Number> LightTerm<T> {
             ambient: times(material.ambient),
             diffuse: times(material.diffuse),
             specular: times(material.specular),
+            ground: all([0, 1, 2].map(|i| light.ground[i] * material.diffuse[i])),
             position: all(light.position),
             axis: all(light.direction.map(|x| -x)),
             attenuation: all(light.attenuation),

@@ -68,6 +68,8 @@ pub(crate) trait LightShader {
 pub(crate) enum Which {
     /// Ambient light.
     Ambient,
+    /// The sky.
+    Sky,
     /// A sun.
     Sun,
     /// A bulb.

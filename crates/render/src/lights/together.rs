@@ -6,6 +6,7 @@ use super::batch::{Batch, Reflected, Sample, load, store};
 use super::bulb::Bulb;
 use super::phong::{Form, HalfVector, Highlight, LightTerm, Nothing, Reflection};
 use super::shader::{LightShader, Which};
+use super::sky::Sky;
 use super::spot::Spot;
 use super::sun::Sun;
 use crate::simd::{Kernel, Lanes, Number, Vec3};
@@ -64,6 +65,7 @@ fn reflected<M: Lanes, H: Highlight>(
 ) -> Option<Reflected<M::R>> {
     match which {
         Which::Ambient => Ambient::shade::<M, H>(lanes, sample, term),
+        Which::Sky => Sky::shade::<M, H>(lanes, sample, term),
         Which::Sun => Sun::shade::<M, H>(lanes, sample, term),
         Which::Bulb => Bulb::shade::<M, H>(lanes, sample, term),
         Which::Spot => Spot::shade::<M, H>(lanes, sample, term),

@@ -8,6 +8,7 @@ use super::rules::LightFacts;
 use super::uses::{Effect, EffectState, EffectUse};
 use crate::frame::shadows::ShadowSource;
 use crate::lights::{self, LightRow, ViewLight};
+use marraztu_core::base::color::Color;
 use marraztu_core::base::{color, math};
 use marraztu_core::scene::{
     Attenuation, CONCENTRATION, HALF_APERTURE, Light, LightKind, LightOrigin, Scene, View,
@@ -52,11 +53,16 @@ pub(super) fn view_lights(
         into.plan.shadows.sources.push(shadow_source(light, &source).filter(|_| shines));
         into.plan.shadows.radii.push(radius);
         into.plan.light_ids.push(id);
+        let shine = |color: Color| match (shines, linear) {
+            (false, _) => [0.0; 3],
+            (true, false) => color.factors().map(|x| x * factor),
+            (true, true) => color.factors().map(|x| color::linear(x) * factor),
+        };
         into.plan.lights.push(ViewLight {
-            color: match (shines, linear) {
-                (false, _) => [0.0; 3],
-                (true, false) => light.color.factors().map(|x| x * factor),
-                (true, true) => light.color.factors().map(|x| color::linear(x) * factor),
+            color: shine(light.color),
+            ground: match light.kind {
+                LightKind::Sky { ground } => shine(ground),
+                _ => [0.0; 3],
             },
             position: position.to_array(),
             direction: turned.unwrap_or(DVec3::NEG_Z).to_array(),
@@ -89,6 +95,9 @@ const FAR_SUN: f64 = 1e9;
 
 /// Returns a light with an extent as a ball: a sun is a bulb far away that does not fade.
 fn ball(light: &Light, source: Source, observer: &ObserverSpace) -> Ball {
+    if matches!(light.kind, LightKind::Sky { .. }) {
+        return Ball { source, attenuation: light.attenuation, radius: f64::INFINITY };
+    }
     if light.kind.has_position() {
         return Ball { source, attenuation: light.attenuation, radius: light.size };
     }
@@ -131,6 +140,8 @@ fn shadow_source(light: &Light, source: &Source) -> Option<ShadowSource> {
         }
     } else if light.kind.has_position() || is_ball {
         ShadowSource::Point(source.position)
+    } else if matches!(light.kind, LightKind::Sky { .. }) {
+        ShadowSource::Everywhere
     } else if light.kind.has_direction() {
         ShadowSource::Direction(-math::unit(source.direction)?)
     } else {
@@ -176,7 +187,8 @@ impl Source {
         Self {
             effect,
             position: DVec3::ZERO,
-            direction: DVec3::NEG_Z,
+            // The sky shines downwards.
+            direction: DVec3::NEG_Y,
             cos_half_aperture: -1.0,
             exponent: 0.0,
         }

@@ -42,6 +42,7 @@ mod lit_points;
 mod map_rows;
 mod map_texels;
 mod new_faces;
+mod occlusion;
 mod optics;
 pub(crate) mod painter;
 pub(crate) mod path_number;

@@ -15,6 +15,7 @@ use glam::DVec3;
 
 use super::fragments::Fragments;
 use super::interpolated::ShadingNumber;
+use super::occlusion::add_sky;
 use super::soft_shadows::add_soft_light;
 use super::triangle_attributes::TriangleAttributes;
 use crate::frame::draw::{Draw, Stage};
@@ -95,6 +96,11 @@ impl<'a> BatchShadows<'a> {
         level: Level,
         batch: &mut Batch<T>,
     ) {
+        if let Some(sky) = self.tracer.sky(stage.light) {
+            self.place();
+            let Self { tracer, scratch, .. } = self;
+            return add_sky((tracer, sky), scratch, (stage, term), level, batch);
+        }
         // Lights without shadows are only added.
         let Some(light) = self.tracer.light(stage.light) else {
             return T::add_light(stage.variant(), level, batch, term);

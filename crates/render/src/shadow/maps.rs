@@ -112,6 +112,8 @@ impl Around {
 /// Returns the views of a light's pictures.
 fn views_of(source: &ShadowSource, around: &Around) -> Vec<MapView> {
     match source {
+        // No picture shows all directions that a point may see.
+        ShadowSource::Everywhere => Vec::new(),
         ShadowSource::Direction(towards) => sun(*towards, around).into_iter().collect(),
         ShadowSource::Cone { at, direction, cos_half_aperture } if *cos_half_aperture > WIDEST => {
             // A closed cone would have an infinite focal length.

@@ -25,7 +25,7 @@ use crate::simd::{Bits, dispatch};
 use crate::texture::sample::{opacity_of, sample};
 use crate::texture::uv::uv;
 use marraztu_core::accuracy::{Filter, ShadowMethod};
-use marraztu_core::base::math::each;
+use marraztu_core::base::math::{each, unit};
 use marraztu_core::scene::{Bounds, dvec3};
 
 /// The distance of a sun, relative to the largest coordinate of the scene.
@@ -53,7 +53,27 @@ pub(crate) struct Tracer<'a> {
     things: Things<'a>,
     /// Each light, if it has an extent.
     soft: Vec<Option<SoftLight>>,
+    /// Each light, if it is a sky.
+    skies: Vec<Option<Sky>>,
     view_from_world: DMat3,
+}
+
+/// A sky that surfaces hide from each other.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sky {
+    /// The colours above the horizon and below it.
+    colors: [[f64; 3]; 2],
+    /// The number of the light.
+    light: u32,
+    /// The number of samples at each point.
+    pub(crate) samples: u32,
+}
+
+impl Sky {
+    /// Returns the colour in a direction.
+    pub(crate) fn color(&self, towards: DVec3) -> [f64; 3] {
+        self.colors[usize::from(towards.y < 0.0)]
+    }
 }
 
 /// A light with an extent.
@@ -123,13 +143,14 @@ impl<'a> Tracer<'a> {
         let far = sun_distance(&casters);
         let reach = casters.iter().map(InPlace::reach).fold(0.0, f64::max);
         let end = |source: &ShadowSource| match source {
-            ShadowSource::Direction(towards) => *towards * far,
+            ShadowSource::Everywhere => None,
+            ShadowSource::Direction(towards) => Some(*towards * far),
             // A light farther away than a sun is treated as one.
             ShadowSource::Point(at) | ShadowSource::Cone { at, .. } => {
-                *at * (far / at.abs().max_element()).min(1.0)
+                Some(*at * (far / at.abs().max_element()).min(1.0))
             }
         };
-        let lights = shadows.sources.iter().map(|source| source.as_ref().map(end)).collect();
+        let lights = shadows.sources.iter().map(|source| source.as_ref().and_then(end)).collect();
         Self {
             casters,
             reach,
@@ -140,6 +161,7 @@ impl<'a> Tracer<'a> {
             filter,
             things: Things::default(),
             soft: Vec::new(),
+            skies: Vec::new(),
             view_from_world: DMat3::IDENTITY,
         }
     }
@@ -157,6 +179,13 @@ impl<'a> Tracer<'a> {
         self.things = Things::new(things);
         self.view_from_world = DMat3::from_mat4(plan.view_from_world);
         let samples = plan.variants.light_samples.count();
+        let sky = |(light, source): (u32, &Option<ShadowSource>)| {
+            let own = &plan.lights[light as usize];
+            let is_sky =
+                *source == Some(ShadowSource::Everywhere) && plan.shadows.radius(light) > 0.0;
+            is_sky.then(|| Sky { colors: [own.color, own.ground], light, samples })
+        };
+        self.skies = (0_u32..).zip(&plan.shadows.sources).map(sky).collect();
         let numbered = (0_u32..).zip(&self.lights);
         self.soft = numbered
             .map(|(light, centre)| {
@@ -172,6 +201,30 @@ impl<'a> Tracer<'a> {
     #[inline(always)]
     pub(crate) fn soft(&self, light: u32) -> Option<SoftLight> {
         self.soft.get(light as usize).copied().flatten()
+    }
+
+    /// Returns a light, if it is a sky that surfaces hide.
+    #[inline(always)]
+    pub(crate) fn sky(&self, light: u32) -> Option<Sky> {
+        self.skies.get(light as usize).copied().flatten()
+    }
+
+    /// Returns a direction to the sky from a point with a normal in view space: the more frequent,
+    /// the closer it is to the normal, in proportion to the cosine.
+    pub(crate) fn sky_sample(
+        &self,
+        sky: &Sky,
+        (point, normal): (DVec3, DVec3),
+        number: u32,
+    ) -> Option<LightSample> {
+        // The view transform turns and scales evenly.
+        let normal = unit(self.view_from_world.transpose() * normal)?;
+        let [u, v] = sequence_sample(number, seed_of(point, sky.light));
+        let (sin, cos) = libm::sincos(v * std::f64::consts::TAU);
+        let (right, up) = normal.any_orthonormal_pair();
+        let across = u.sqrt();
+        let towards = normal * (1.0 - u).sqrt() + right * (across * cos) + up * (across * sin);
+        Some(LightSample { towards, distance: f64::INFINITY, shift: DVec3::ZERO })
     }
 
     /// Returns a sample of a light at a point.

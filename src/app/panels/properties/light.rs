@@ -18,7 +18,7 @@ use marraztu_core::edit::{
     Change, Gesture, GesturePhase, Refusal, items, lights, motion, placement, several,
 };
 use marraztu_core::scene::{
-    Anchor, Attenuation, ItemId, Light, LightId, Orbit, Scene, SpotOwner, Tracked, View,
+    Anchor, Attenuation, ItemId, Light, LightId, LightKind, Orbit, Scene, SpotOwner, Tracked, View,
 };
 
 /// The light in the panel, and the other selected lights.
@@ -133,7 +133,7 @@ impl Shown<'_> {
                     lights::set_shadows(scene, id, !light.shadows)
                 });
             }
-            if light.shadows {
+            if light.shadows && light.largest_size() > 0.0 {
                 self.size_ui(ui, requests);
             }
         }
@@ -150,6 +150,19 @@ impl Shown<'_> {
                 self.set(requests, "Colour", gesture, |light| light.color = color);
             }
         });
+        if let LightKind::Sky { ground } = light.kind {
+            row(ui, "Ground", |ui| {
+                if let Some((color, gesture)) =
+                    swatch(ui, "Ground", "The colour below the horizon", ground)
+                {
+                    self.set(requests, "Ground of", gesture, |light| {
+                        if let LightKind::Sky { ground } = &mut light.kind {
+                            *ground = color;
+                        }
+                    });
+                }
+            });
+        }
         let hint = "The key from 0 to 9 that switches the light; each key belongs to one light";
         let number = Number::new("Key", hint).speed(0.05).range(0.0..=9999.0).whole();
         if let Some((to, gesture)) = number_row(ui, "Key", number, f64::from(light.slot)) {

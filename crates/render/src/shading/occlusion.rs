@@ -1,0 +1,61 @@
+//! Occlusion of the sky: the part of it that each point sees.
+//!
+//! Directions are sampled around the normal, in proportion to their cosine, and rays look for
+//! surfaces in them. The light of the whole sky is known exactly, so it is multiplied by the
+//! fraction of the samples' light that arrives. With one colour this is ambient occlusion.
+//!
+//! Zhukov, Iones and Kronin, "An Ambient Light Illumination Model", 1998; Landis,
+//! "Production-Ready Global Illumination", SIGGRAPH course notes, 2002.
+
+use fearless_simd::Level;
+use glam::DVec3;
+
+use super::interpolated::ShadingNumber;
+use super::shadows::{first, lit};
+use crate::frame::draw::Stage;
+use crate::lights::{Batch, LightTerm};
+use crate::shadow::ball_light::LightSample;
+use crate::shadow::rays::RayScratch;
+use crate::shadow::shaft::POINTS;
+use crate::shadow::tracer::{Sky, Tracer};
+use crate::simd::Bits;
+
+/// Adds the light of the sky at every position of a batch.
+pub(super) fn add_sky<T: ShadingNumber>(
+    (tracer, sky): (&Tracer<'_>, Sky),
+    scratch: &mut RayScratch,
+    (stage, term): (&Stage, &LightTerm<T>),
+    level: Level,
+    batch: &mut Batch<T>,
+) {
+    let before = first(&batch.diffuse);
+    let specular = first(&batch.specular);
+    T::add_light(stage.variant(), level, batch, term);
+    let reached = lit(level, batch, &(before, specular));
+    let mut samples: [Option<LightSample>; POINTS] = [None; POINTS];
+    let (mut all, mut seen) = ([[0.0; 3]; POINTS], [[0.0; 3]; POINTS]);
+    for number in 0..sky.samples {
+        for i in Bits(reached) {
+            let normal = DVec3::from(batch.normal.each_ref().map(|row| row[i].into()));
+            samples[i] = tracer.sky_sample(&sky, (scratch.origins.point(i), normal), number);
+        }
+        let blocked = tracer.blocked(level, scratch, &samples, reached);
+        for i in Bits(reached) {
+            let Some(sample) = samples[i] else { continue };
+            let color = sky.color(sample.towards);
+            let is_seen = blocked >> i & 1 == 0;
+            for channel in 0..3 {
+                all[i][channel] += color[channel];
+                seen[i][channel] += if is_seen { color[channel] } else { 0.0 };
+            }
+        }
+    }
+    for i in Bits(reached) {
+        for channel in 0..3 {
+            let (all, seen) = (all[i][channel], seen[i][channel]);
+            let share = if all > 0.0 { seen / all } else { 1.0 };
+            let own = batch.diffuse[channel][i] - before[channel][i];
+            batch.diffuse[channel][i] = before[channel][i] + own * T::from_f64(share);
+        }
+    }
+}
