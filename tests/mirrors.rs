@@ -6,6 +6,7 @@
 //! the observer or outside of the view that a mirror does not show, a mirror that keeps an old
 //! picture, and scenes without mirrors that pay for them.
 
+#![allow(clippy::cast_possible_truncation, reason = "small numbers")]
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
 mod common;
@@ -274,7 +275,7 @@ fn what_comes_after_a_change_out_of_view_is_what_a_new_picture_shows() {
     type Edit = fn(&mut Scene);
     let edits: [Edit; 4] = [
         |scene| {
-            edit(scene, ObjectId(11), |it| it.placement = Tracked::new(at(60.0, 30.0, 0.0, 900.0)))
+            edit(scene, ObjectId(11), |it| it.placement = Tracked::new(at(60.0, 30.0, 0.0, 900.0)));
         },
         |scene| paint(scene, 11, Material::matte([0.9; 3], [0.0, 0.9, 0.0])),
         |scene| edit(scene, ObjectId(11), |it| it.visible = false),
@@ -317,8 +318,8 @@ fn a_pixel_of_glass_is_explained_with_what_is_seen_in_it() {
             let sum = explained.terms.iter().fold(explained.rounding, |sum, term| {
                 std::array::from_fn(|i| sum[i] + term.value[i])
             });
-            for i in 0..3 {
-                assert!((sum[i] - explained.color[i]).abs() < 1e-12, "{x},{y}");
+            for (i, sum) in sum.into_iter().enumerate() {
+                assert!((sum - explained.color[i]).abs() < 1e-12, "{x},{y}");
                 let byte = f64::from(explained.bytes[i]);
                 let color = (explained.color[i] * 255.0).clamp(0.0, 255.0);
                 assert!((color - byte).abs() < 0.502, "{x},{y}: {color} {byte}");

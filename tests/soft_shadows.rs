@@ -32,7 +32,7 @@ fn light(scene: &mut Scene, kind: LightKind, size: f64) {
 }
 
 fn sun(towards: DVec3) -> LightKind {
-    LightKind::Sun { direction: Tracked::new(-towards.normalize()) }
+    LightKind::Sun { direction: Tracked::new(-towards.normalize_or_zero()) }
 }
 
 fn bulb(place: DVec3) -> LightKind {
@@ -220,7 +220,7 @@ fn after_a_change_the_picture_is_that_of_a_new_renderer() {
     type Edit = fn(&mut Scene);
     let edits: [Edit; 3] = [
         |scene| {
-            edit(scene, ObjectId(11), |it| it.placement = Tracked::new(at(30.0, 9.0, 0.0, 25.0)))
+            edit(scene, ObjectId(11), |it| it.placement = Tracked::new(at(30.0, 9.0, 0.0, 25.0)));
         },
         |scene| light(scene, sun(DVec3::new(0.2, 0.1, 1.0)), 4.0),
         |scene| light(scene, sun(DVec3::new(0.2, 0.1, 1.0)), 0.0),

@@ -35,7 +35,7 @@ const CHANGES: [(&str, Change); 7] = [
                     Tracked::new((*direction.now() + DVec3::X * 0.1).normalize_or(DVec3::X));
                 true
             }
-            LightKind::Ambient | LightKind::Bulb { .. } | LightKind::Spot { .. } => false,
+            _ => false,
         });
     }),
     ("bulb moves", |scene| {
@@ -44,7 +44,7 @@ const CHANGES: [(&str, Change); 7] = [
                 *position = Tracked::new(*position.now() + DVec3::X * 5.0);
                 true
             }
-            LightKind::Ambient | LightKind::Sun { .. } | LightKind::Spot { .. } => false,
+            _ => false,
         });
     }),
     ("spot moves", |scene| {
@@ -55,10 +55,7 @@ const CHANGES: [(&str, Change); 7] = [
                 *aim = Tracked::new(moved);
                 true
             }
-            LightKind::Ambient
-            | LightKind::Sun { .. }
-            | LightKind::Bulb { .. }
-            | LightKind::Spot { .. } => false,
+            _ => false,
         });
     }),
     ("bulb recoloured", |scene| {

@@ -40,7 +40,7 @@ pub(crate) fn measure(criterion: &mut Criterion) {
         // One frame outside the measurement counts the rays.
         let mut renderer = Renderer::default();
         renderer.render(&stage.plan(0));
-        let RayCount { traced, occluded } = renderer.rays();
+        let RayCount { traced, occluded, .. } = renderer.rays();
         let told = format!("shadows/{name}: {traced} rays, {occluded} of them occluded");
         let _ = writeln!(std::io::stdout().lock(), "{told}");
         for (method, shadow_method) in METHODS {

@@ -72,7 +72,7 @@ pub struct FramePlan {
     pub(crate) pipelines: Vec<Pipeline>,
     /// What rays can meet, if any surface mirrors or refracts: all objects, whether the picture
     /// shows them or not, with light at pixels.
-    pub(crate) surroundings: Option<Box<FramePlan>>,
+    pub(crate) surroundings: Option<Box<Self>>,
     /// Whether rules leave out what no pixel shows.
     pub(crate) rules: Rules,
 }

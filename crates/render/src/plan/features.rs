@@ -135,13 +135,13 @@ impl FramePlan {
                 }
             }),
             Effect::Transparency => {
-                plan.for_each_shaded(&|shaded: &mut Shaded| shaded.opacity = None)
+                plan.for_each_shaded(&|shaded: &mut Shaded| shaded.opacity = None);
             }
             Effect::VertexColors => {
-                plan.for_each_shaded(&|shaded: &mut Shaded| shaded.vertex_colors = false)
+                plan.for_each_shaded(&|shaded: &mut Shaded| shaded.vertex_colors = false);
             }
             Effect::Emission => {
-                plan.for_each_shaded(&|shaded: &mut Shaded| shaded.extras.emission = None)
+                plan.for_each_shaded(&|shaded: &mut Shaded| shaded.extras.emission = None);
             }
             Effect::Maps => plan.for_each_shaded(&|shaded: &mut Shaded| {
                 // The ambient glow stays, because its lights are not among the stages.

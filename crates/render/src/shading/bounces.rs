@@ -313,10 +313,8 @@ impl<T: ShadingNumber> Bounces<T> {
                 points.clear();
                 points.extend(list.iter().filter_map(|at| Some(met[at[2] as usize]?.point)));
                 shader.shade_points(&group, &points, light);
-                let opacities = match shaded.and_then(|shaded| shaded.opacity) {
-                    Some(_) => Some(shader.opacities(&group)),
-                    None => None,
-                };
+                let opacities =
+                    shaded.and_then(|shaded| shaded.opacity).map(|_| shader.opacities(&group));
                 let normals = shader.batch.normal;
                 let mapped = rays.filter(|rays| rays.map.is_some());
                 let mapped = mapped.map(|rays| shader.mapped_specular(&group, rays));

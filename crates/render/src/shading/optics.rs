@@ -132,7 +132,8 @@ mod tests {
     use super::*;
 
     fn meeting(towards: DVec3, normal: DVec3) -> Meeting {
-        Meeting { towards: towards.normalize(), normal: normal.normalize(), face: DVec3::Y }
+        let [towards, normal] = [towards, normal].map(DVec3::normalize_or_zero);
+        Meeting { towards, normal, face: DVec3::Y }
     }
 
     #[test]

@@ -64,6 +64,8 @@ const fn mixed(x: u32) -> u32 {
 
 #[cfg(test)]
 mod tests {
+    #![expect(clippy::cast_possible_truncation, reason = "coordinates below 256")]
+
     use super::*;
 
     #[test]

@@ -183,7 +183,7 @@ impl<'a> Tracer<'a> {
             let own = &plan.lights[light as usize];
             let is_sky =
                 *source == Some(ShadowSource::Everywhere) && plan.shadows.radius(light) > 0.0;
-            is_sky.then(|| Sky { colors: [own.color, own.ground], light, samples })
+            is_sky.then_some(Sky { colors: [own.color, own.ground], light, samples })
         };
         self.skies = (0_u32..).zip(&plan.shadows.sources).map(sky).collect();
         let numbered = (0_u32..).zip(&self.lights);
