@@ -402,7 +402,11 @@ fn signalled(folder: &Path, signal: &str) -> (Option<i32>, Vec<serde_json::Value
     let mut child = command(folder, &arguments).stderr(Stdio::null()).spawn().unwrap();
     // Wait until the first picture is there.
     let begin = Instant::now();
-    while contents(&folder.join("out")).is_empty() && begin.elapsed() < Duration::from_secs(60) {
+    let is_there = || {
+        let mut names = std::fs::read_dir(folder.join("out")).into_iter().flatten().flatten();
+        names.any(|it| it.file_name().to_str().is_some_and(|it| it.ends_with(".png")))
+    };
+    while !is_there() && begin.elapsed() < Duration::from_secs(60) {
         std::thread::sleep(Duration::from_millis(5));
     }
     let id = child.id().to_string();
