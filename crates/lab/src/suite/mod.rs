@@ -31,12 +31,17 @@ pub struct SuiteScene {
     /// The keys of the axes on it with choices that differ in time alone, each with the reason. On
     /// all others, the error of a choice can be seen.
     pub time_only: &'static [(&'static str, &'static str)],
+    /// The width and height of the suite's pictures, divided by those of this scene's pictures.
+    pub smaller: usize,
     make: fn(u32) -> (Scene, View),
 }
 
 /// The arithmetic of light differs in time alone.
 const F32_LIGHT: (&str, &str) =
     ("arithmetic", "light in 32 bits is off by a hundredth of a byte step at most");
+
+/// Pictures of rays that are not kept take long: a second of work for each 2 to 5 million of them.
+const RAYS: usize = 4;
 
 /// The scenes; together they cover every axis of accuracy.
 pub const SUITE: &[SuiteScene] = &[
@@ -45,6 +50,7 @@ pub const SUITE: &[SuiteScene] = &[
         what: "the first scene of the editor",
         axes: &["samples", "resolution", "shading", "arithmetic"],
         time_only: &[F32_LIGHT],
+        smaller: 1,
         make: |_| io::default_scene(),
     },
     SuiteScene {
@@ -52,6 +58,7 @@ pub const SUITE: &[SuiteScene] = &[
         what: "one lit triangle over the whole picture",
         axes: &["arithmetic", "rounding", "values"],
         time_only: &[F32_LIGHT],
+        smaller: 1,
         make: scenes::pixels,
     },
     SuiteScene {
@@ -59,6 +66,7 @@ pub const SUITE: &[SuiteScene] = &[
         what: "a million triangles, each about a pixel, 10,000,000 units from the origin",
         axes: &["vertices", "subpixels"],
         time_only: &[],
+        smaller: 1,
         make: scenes::vertices,
     },
     SuiteScene {
@@ -66,6 +74,7 @@ pub const SUITE: &[SuiteScene] = &[
         what: "balls with exponents from 5 to 500, one of them flattened",
         axes: &["shading", "stretched", "specular"],
         time_only: &[],
+        smaller: 1,
         make: scenes::highlights,
     },
     SuiteScene {
@@ -73,6 +82,7 @@ pub const SUITE: &[SuiteScene] = &[
         what: "a textured floor up to the horizon, seen in a roll",
         axes: &["filter", "interpolation"],
         time_only: &[],
+        smaller: 1,
         make: scenes::textures,
     },
     SuiteScene {
@@ -80,6 +90,7 @@ pub const SUITE: &[SuiteScene] = &[
         what: "a fence of thin slats",
         axes: &["samples", "coverage"],
         time_only: &[],
+        smaller: 1,
         make: scenes::edges,
     },
     SuiteScene {
@@ -87,6 +98,7 @@ pub const SUITE: &[SuiteScene] = &[
         what: "a ship 10,000,000 units from the origin",
         axes: &["vertices"],
         time_only: &[],
+        smaller: 1,
         make: scenes::far,
     },
     SuiteScene {
@@ -94,6 +106,7 @@ pub const SUITE: &[SuiteScene] = &[
         what: "pairs of surfaces 0.001 apart, from 2 to 2000 units away",
         axes: &["depth"],
         time_only: &[],
+        smaller: 1,
         make: scenes::depth,
     },
     SuiteScene {
@@ -101,6 +114,7 @@ pub const SUITE: &[SuiteScene] = &[
         what: "thirty-two glass balls, one inside another, each cut through by its neighbours",
         axes: &["transparency"],
         time_only: &[],
+        smaller: 1,
         make: scenes::layers,
     },
     SuiteScene {
@@ -108,6 +122,7 @@ pub const SUITE: &[SuiteScene] = &[
         what: "balls with a height map, near and far",
         axes: &["bumps", "tangents"],
         time_only: &[],
+        smaller: 1,
         make: scenes::bumps,
     },
     SuiteScene {
@@ -115,13 +130,15 @@ pub const SUITE: &[SuiteScene] = &[
         what: "balls on a floor under a sun, a bulb and a spot that cast shadows",
         axes: &["shadow-method", "terminator"],
         time_only: &[],
+        smaller: 1,
         make: scenes::shadows,
     },
     SuiteScene {
         word: "soft",
-        what: "the same with a large sun, bulb and spot",
+        what: "the same with a sun of 6 degrees",
         axes: &["light-samples"],
         time_only: &[],
+        smaller: RAYS,
         make: scenes::soft,
     },
     SuiteScene {
@@ -129,6 +146,7 @@ pub const SUITE: &[SuiteScene] = &[
         what: "balls of glass and metal between two mirrors that face each other",
         axes: &["bounces"],
         time_only: &[],
+        smaller: RAYS,
         make: scenes::mirrors,
     },
 ];
@@ -232,8 +250,9 @@ fn measured(
     let question = Question::new(current, suite.measured(), detail.thoroughness);
     // Presets are skipped: on some scenes the ancestors' algorithms would take minutes.
     let found = candidates(&scene, &view, &question);
-    let mut studio = Studio::new(Shot::new(&scene, &view, &current, detail.size));
-    let size = detail.size;
+    let Size { width, height } = detail.size;
+    let size = Size::new((width / suite.smaller).max(1), (height / suite.smaller).max(1));
+    let mut studio = Studio::new(Shot::new(&scene, &view, &current, size));
     let mut bench = Bench { clock, source: &mut studio, watch, question: &question, size };
     let findings = bench.run(found, &mut |_| {})?;
     Ok(Report {

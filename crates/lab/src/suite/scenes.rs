@@ -320,14 +320,13 @@ pub(super) fn shadows(detail: u32) -> (Scene, View) {
     (scene, view)
 }
 
-/// Builds the same scene with lights that have an extent.
+/// Builds the same scene with a large sun.
 pub(super) fn soft(detail: u32) -> (Scene, View) {
     let (mut scene, view) = shadows(detail);
     let lights = scene.lights.iter().map(|(id, light)| {
         let size = match light.kind {
-            LightKind::Ambient | LightKind::Sky { .. } => 0.0,
             LightKind::Sun { .. } => 6.0,
-            LightKind::Bulb { .. } | LightKind::Spot { .. } => 15.0,
+            _ => 0.0,
         };
         (id, Light { size, ..light.clone() })
     });
