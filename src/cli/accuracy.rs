@@ -9,6 +9,8 @@ use marraztu_core::accuracy::{ACCURACY_PRESETS, AXES, AccuracyPreset, Axis, Choi
 pub(crate) struct Accuracy {
     preset: Option<&'static AccuracyPreset>,
     choices: Vec<&'static Choice>,
+    /// The axes of these choices.
+    axes: Vec<&'static Axis>,
     /// Whether the samples per pixel are among the choices.
     names_samples: bool,
 }
@@ -31,6 +33,11 @@ impl Accuracy {
     pub(crate) fn of_file(&self, settings: &Settings) -> Settings {
         let settings = self.of(settings);
         if self.names_samples { settings } else { settings.refined() }
+    }
+
+    /// Returns the axes that were given as options.
+    pub(crate) fn fixed(&self) -> Vec<&'static Axis> {
+        self.axes.clone()
     }
 }
 
@@ -91,6 +98,7 @@ impl FromArgMatches for Accuracy {
         self.preset = word(PRESET).and_then(AccuracyPreset::named);
         let chosen = |axis: &Axis| word(axis.key).and_then(|word| axis.choice(word));
         self.choices = AXES.iter().filter_map(chosen).collect();
+        self.axes = AXES.iter().filter(|axis| chosen(axis).is_some()).collect();
         self.names_samples = word(SAMPLES).is_some();
         Ok(())
     }

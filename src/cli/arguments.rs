@@ -7,6 +7,7 @@ use clap::Args;
 use clap::builder::{PathBufValueParser, PossibleValuesParser, TypedValueParser};
 
 use super::accuracy::Accuracy;
+use super::budget::Budget;
 use super::layers::{Encoding, LayerOptions};
 use super::talk::Talk;
 use super::terminal::TerminalForm;
@@ -40,6 +41,7 @@ Examples:
   marraztu render room.obj --out room.png --up z --surface texture --filter nearest
   marraztu render spot.obj --out spot.png --from 145,20
   marraztu render shelf.marraztu --out shelf.ppm --camera 2 --time 1.5
+  marraztu render example:/chess.marraztu --within 20ms
   marraztu render cow.obj --out cow-{layer}.png --layers color,depth,normal,object
   marraztu render cow.obj --out cow.exr --layers all
   marraztu render ship.obj --out lines.png --edges --projection orthographic --background 0,0,0")]
@@ -61,6 +63,8 @@ pub(crate) struct Render {
     pub(crate) report: bool,
     #[command(flatten)]
     pub(crate) picture: PictureArguments,
+    #[command(flatten)]
+    pub(crate) budget: Budget,
     #[command(flatten)]
     pub(crate) layers: LayerOptions,
 }

@@ -8,6 +8,7 @@ mod arguments;
 mod bar;
 #[cfg(not(target_family = "wasm"))]
 mod batch;
+mod budget;
 mod cameras;
 mod commands;
 #[cfg(not(target_family = "wasm"))]

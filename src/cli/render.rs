@@ -35,8 +35,11 @@ pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
     if arguments.report && !arguments.layers.has_color() {
         return Err(usage("--report measures the picture, and --layers has no color"));
     }
+    if arguments.budget.is_given() && !arguments.layers.has_color() {
+        return Err(usage("a budget is for the picture, and --layers has no color"));
+    }
     let target = Target::of(arguments)?;
-    let stage = stage(&arguments.picture)?;
+    let mut stage = stage(&arguments.picture)?;
     target.check(&stage.sources(&arguments.picture.files), arguments.transparent)?;
     if arguments.layers.are_given() {
         check_cameras(&target.folder().join(CAMERAS))?;
@@ -48,6 +51,8 @@ pub(crate) fn render(arguments: &Render) -> Result<(), Failure> {
         object.model.mesh.draw_as_filed();
     }
     let shot = stage.shot(target.size(arguments.picture.size));
+    stage.settings = arguments.budget.settings(&shot, &arguments.picture.accuracy)?;
+    let shot = shot.with(stage.settings);
     if let Some(path) = target.plain_file(&arguments.layers) {
         let done = render_file(arguments, &shot, path, &progress, bar);
         // The process ends here, so freeing a million vertices would only waste time.

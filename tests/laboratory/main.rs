@@ -7,6 +7,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails where there is nothing")]
 
 mod bench;
+mod budget;
 mod lacking;
 mod lessons;
 mod planted;

@@ -249,8 +249,13 @@ fn is_combined(
     axis.kind != AxisKind::Model
         && !is_ideal(choice, base)
         && !choice.is(base)
-        && !HISTORICAL.contains(&(axis.key, choice.word))
+        && !is_historical(axis, choice)
         && (choice.sense)(scene, view).is_ok()
+}
+
+/// Returns whether a choice exists only for teaching.
+pub(crate) fn is_historical(axis: &Axis, choice: &Choice) -> bool {
+    HISTORICAL.contains(&(axis.key, choice.word))
 }
 
 /// Choices that exist only for teaching.

@@ -26,7 +26,7 @@ const WINDOW: usize = 16;
 const DRAWS: usize = 5;
 
 /// The most times that it is drawn while its time is uncertain, and the time spent on that.
-const MOST_DRAWS: usize = 30;
+pub(crate) const MOST_DRAWS: usize = 30;
 const STEADYING: Duration = Duration::from_secs(2);
 
 /// The time for drawing pictures and the time for drawing windows before the first figures.
@@ -40,8 +40,8 @@ const REFINING: Duration = Duration::from_secs(8);
 const BETWEEN: Duration = Duration::from_millis(400);
 
 /// The uncertainty at which an error, and a time, is known well enough.
-const ENOUGH: f64 = 0.05;
-const NARROW: f64 = 0.1;
+pub(crate) const ENOUGH: f64 = 0.05;
+pub(crate) const NARROW: f64 = 0.1;
 
 /// What a picture costs and what it gives.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -343,7 +343,7 @@ impl Sample {
 }
 
 /// Returns the detail of each window: how much the pictures differ there.
-fn details(pictures: &[&Picture], windows: &[PixelBox]) -> Vec<f64> {
+pub(crate) fn details(pictures: &[&Picture], windows: &[PixelBox]) -> Vec<f64> {
     let mut details = vec![0.0; windows.len()];
     for (i, one) in pictures.iter().enumerate() {
         for other in &pictures[..i] {
@@ -360,7 +360,7 @@ fn details(pictures: &[&Picture], windows: &[PixelBox]) -> Vec<f64> {
 }
 
 /// Divides a picture into windows of at most `side` x `side` pixels.
-fn windows(size: Size, side: usize) -> impl Iterator<Item = PixelBox> {
+pub(crate) fn windows(size: Size, side: usize) -> impl Iterator<Item = PixelBox> {
     let at = |pixels: usize| i32::try_from(pixels).unwrap_or(i32::MAX);
     (0..size.height).step_by(side).flat_map(move |top| {
         (0..size.width).step_by(side).map(move |left| PixelBox {
@@ -378,7 +378,7 @@ fn squares(a: &Picture, b: &Picture, window: &PixelBox) -> f64 {
 }
 
 /// Returns the same sum, for a picture `exact` of the window alone.
-fn squares_within(picture: &Picture, exact: &Picture, window: &PixelBox) -> f64 {
+pub(crate) fn squares_within(picture: &Picture, exact: &Picture, window: &PixelBox) -> f64 {
     pixels_of(picture, window).zip(exact.pixels()).map(|(a, b)| squared(a, b)).sum()
 }
 

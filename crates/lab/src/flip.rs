@@ -15,6 +15,7 @@ use rayon::prelude::*;
 
 use marraztu_core::base::color::linear_factors;
 use marraztu_core::base::image::{Picture, Size};
+use marraztu_render::screen::coverage::PixelBox;
 
 /// Pixels per degree: 0.7 (3840 / 0.7) (pi / 180).
 const PIXELS_A_DEGREE: f64 = 3840.0 * std::f64::consts::PI / 180.0;
@@ -70,6 +71,18 @@ impl Perceived {
     pub fn difference(&self, other: &Self) -> f64 {
         assert_eq!(self.size, other.size, "pictures of one size are compared");
         mean(&self.sums(other, 0..self.size.height, &|_| true), self.size.area())
+    }
+
+    /// The distance in pixels up to which a pixel changes the metric of another one.
+    pub(crate) const REACH: usize = REACH;
+
+    /// Returns the largest difference of a pixel within a window, from 0 to 1.
+    pub(crate) fn largest(&self, other: &Self, window: &PixelBox) -> f64 {
+        let (width, most) = (self.size.width, most_color_error());
+        let [left, top, right, bottom] = [window.left, window.top, window.right, window.bottom]
+            .map(|side| usize::try_from(side).unwrap_or(0));
+        let pixels = (top..bottom).flat_map(|y| y * width + left..y * width + right);
+        pixels.map(|i| self.at(other, i, most)).fold(0.0, f64::max)
     }
 
     /// Returns the sum of the differences in each of some rows, at the pixels that count. Summation

@@ -13,6 +13,7 @@
 //! ```
 
 pub mod attribution;
+pub mod budget;
 pub mod candidates;
 pub mod cost;
 pub mod dial;

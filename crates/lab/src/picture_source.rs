@@ -5,11 +5,10 @@ use super::hash::fnv1a;
 use super::lost::{PixelSurface, flat_surface};
 use marraztu_core::accuracy::Shot;
 use marraztu_core::accuracy::{Axis, AxisKind, Samples, Settings, uncapitalized};
-use marraztu_core::base::image::Picture;
+use marraztu_core::base::image::{Picture, Size};
 use marraztu_io::Progress;
-use marraztu_render::Renderer;
-use marraztu_render::plan_frame;
 use marraztu_render::screen::coverage::PixelBox;
+use marraztu_render::{FramePlan, Renderer, plan_frame};
 
 /// The reference that pictures are judged against.
 #[derive(Clone, Copy, Debug, Default)]
@@ -71,6 +70,11 @@ pub trait PictureSource {
         let [r, g, b, _] = self.picture().pixel(x, y);
         [r, g, b]
     }
+    /// Returns a window of the picture with these settings, which are an ideal.
+    fn ideal_window(&mut self, ideal: &Settings, window: PixelBox) -> Picture {
+        self.draw(ideal);
+        cropped(self.picture(), window)
+    }
     /// Returns the last picture.
     fn picture(&self) -> &Picture;
     /// Returns the primitive at each pixel of the last picture.
@@ -101,6 +105,8 @@ pub trait PictureSource {
 pub struct Studio {
     shot: Shot,
     renderer: Renderer,
+    /// The plan of the ideal, once a window of it was drawn.
+    ideal: Option<(Settings, FramePlan)>,
     /// Cancels drawing between two tiles when the pictures are no longer wanted.
     progress: Progress,
 }
@@ -114,7 +120,7 @@ impl Studio {
     /// Works like [`Self::new`]. Once `progress` is cancelled, drawing ends soon with undefined
     /// pictures.
     pub fn watched(shot: Shot, progress: Progress) -> Self {
-        Self { shot, renderer: Renderer::default(), progress }
+        Self { shot, renderer: Renderer::default(), ideal: None, progress }
     }
 
     /// Returns the shot.
@@ -159,6 +165,18 @@ impl PictureSource for Studio {
         [r, g, b]
     }
 
+    fn ideal_window(&mut self, ideal: &Settings, window: PixelBox) -> Picture {
+        let plan = match self.ideal.take() {
+            Some((settings, plan)) if settings == *ideal => plan,
+            _ => plan_frame(&self.shot.with(*ideal)),
+        };
+        let wanted = || !self.progress.is_cancelled();
+        let picture = self.renderer.render_window(&plan, window, &wanted);
+        self.ideal = Some((*ideal, plan));
+        // A cancelled picture is not used.
+        picture.unwrap_or_default()
+    }
+
     fn picture(&self) -> &Picture {
         self.renderer.picture()
     }
@@ -177,6 +195,16 @@ impl PictureSource for Studio {
         }
         self.renderer.surfaces()
     }
+}
+
+/// Returns a window of a picture.
+pub(crate) fn cropped(picture: &Picture, window: PixelBox) -> Picture {
+    let [left, top, right, bottom] = [window.left, window.top, window.right, window.bottom]
+        .map(|side| usize::try_from(side).unwrap_or(0));
+    let width = picture.size().width;
+    let row = |y: usize| &picture.pixels()[y * width + left..y * width + right];
+    let pixels: Vec<[u8; 4]> = (top..bottom).flat_map(row).copied().collect();
+    Picture::from_pixels(Size::new(right - left, bottom - top), pixels).unwrap_or_default()
 }
 
 /// Hashes a picture's pixels with FNV-1a, with the same value on every machine.

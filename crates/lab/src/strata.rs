@@ -116,7 +116,12 @@ impl Strata {
 
     /// Estimates the sum of a figure over all parts.
     pub(crate) fn sum(&self, figure: usize) -> Estimate {
-        let all = self.moments(figure);
+        self.sum_of(&|part| self.known[&part][figure])
+    }
+
+    /// Estimates the sum of a figure over all parts. `of` returns it for each part that was drawn.
+    pub(crate) fn sum_of(&self, of: &dyn Fn(usize) -> f64) -> Estimate {
+        let all = self.moments(of);
         let value: f64 = all.iter().map(|it| it.count * it.mean).sum();
         let variance: f64 = all.iter().map(Moments::variance_of_sum).sum();
         if value <= 0.0 || variance <= 0.0 {
@@ -140,7 +145,7 @@ impl Strata {
         let figures = self.known().next().map_or(0, <[f64]>::len);
         let mut gains = vec![0.0; self.strata.len()];
         for figure in 0..figures {
-            let all = self.moments(figure);
+            let all = self.moments(&|part| self.known[&part][figure]);
             let value: f64 = all.iter().map(|it| it.count * it.mean).sum();
             if value > 0.0 {
                 for (gain, it) in gains.iter_mut().zip(&all) {
@@ -153,10 +158,10 @@ impl Strata {
     }
 
     /// Returns the moments of a figure in each stratum.
-    fn moments(&self, figure: usize) -> Vec<Moments> {
+    fn moments(&self, figure: &dyn Fn(usize) -> f64) -> Vec<Moments> {
         let of = |stratum: &Stratum| {
             let drawn = &stratum.parts[..stratum.drawn];
-            let values = || drawn.iter().map(|part| self.known[part][figure]);
+            let values = || drawn.iter().map(|part| figure(*part));
             let number = drawn.len() as f64;
             let mean = values().sum::<f64>() / number.max(1.0);
             let squares = values().map(|value| (value - mean) * (value - mean)).sum::<f64>();
