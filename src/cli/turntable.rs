@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use clap::builder::{PathBufValueParser, TypedValueParser};
+use marraztu_core::accuracy::Shot;
 use marraztu_core::edit::Refusal;
 use marraztu_core::edit::turntable::{Turn, turned};
 use marraztu_core::scene::View;
@@ -12,6 +13,7 @@ use marraztu_render::{Renderer, plan_frame, without_ground};
 
 use super::arguments::PictureArguments;
 use super::bar::Bar;
+use super::budget::Budget;
 use super::failure::Failure;
 use super::render::stage;
 use super::stage::Stage;
@@ -25,7 +27,8 @@ const MOST_FRAMES: i64 = 3600;
 /// A turn, and the file that it goes to.
 #[derive(Debug, Args)]
 #[command(after_help = "\
-The first picture is the same as from `render` with these options. Objects that spin and lights that
+The first picture is the same as from `render` with these options; a budget for accuracy is resolved
+for it, and all pictures have its settings. Objects that spin and lights that
 circle keep moving. Nothing is written before the last picture is drawn, except numbered pictures.
 
 Examples:
@@ -56,26 +59,31 @@ pub(crate) struct Turntable {
     transparent: bool,
     #[command(flatten)]
     pub(super) picture: PictureArguments,
+    #[command(flatten)]
+    budget: Budget,
 }
 
 /// Draws the turn described by the arguments.
 pub(super) fn turntable(arguments: &Turntable) -> Result<(), Failure> {
-    let Turntable { out, frames, seconds, turn, transparent, picture } = arguments;
+    let Turntable { out, frames, seconds, turn, transparent, picture, budget } = arguments;
     let path = out.clone().unwrap_or_else(|| default_name(&picture.files).with_extension("gif"));
     // Check the name before the files are loaded, which may take long.
     AnimationWriter::check(&path, &Sources::default())?;
-    let stage = stage(picture)?;
+    let mut stage = stage(picture)?;
     let size = picture.size;
     let (frames, seconds, transparent) = (*frames, *seconds, *transparent);
     let animation = Animation { size, frames, seconds, transparent };
     let turn = if turn == "camera" { Turn::Camera } else { Turn::Objects };
     // A refusal leaves no file.
-    turned(&stage.scene, &stage.view, turn, 0.0).map_err(|refusal| match refusal {
+    let scene = turned(&stage.scene, &stage.view, turn, 0.0).map_err(|refusal| match refusal {
         Refusal::ObjectLooks => Failure::Absent(
             "the observer is an object; choose a camera with --camera to turn it".to_owned(),
         ),
         other => other.into(),
     })?;
+    // All pictures have the settings of the first one, so the turn does not flicker.
+    let first = Shot { scene, ..stage.shot(size) };
+    stage.settings = budget.settings(&first, &picture.accuracy)?;
     let mut writer = AnimationWriter::begin(&path, animation, &stage.sources(&picture.files))?;
     for text in writer.notes() {
         note(text);

@@ -64,6 +64,24 @@ fn a_picture_for_a_budget_is_that_of_the_printed_options_and_keeps_the_promise()
 }
 
 #[test]
+fn the_pictures_of_a_turn_have_the_settings_of_the_first_one() {
+    let folder = folder();
+    let folder = folder.path();
+    let turn = |out: &str, options: &[&str]| {
+        let all = ["turntable", "--out", out, "--size", "48x36", "--frames", "3"];
+        let (_, err) = ends_with(0, folder, &[&all[..], options].concat());
+        let read =
+            |i: u32| std::fs::read(folder.join(out).join(format!("frame-{i:03}.png"))).unwrap();
+        (err, (1..=3).map(read).collect::<Vec<_>>())
+    };
+    let (err, budgeted) = turn("budget", &["--error", "2"]);
+    let options = err.lines().find(|line| line.contains("against the ideal")).unwrap();
+    let options: Vec<&str> = options.rsplit_once(": ").unwrap().1.split_whitespace().collect();
+    assert!(options.contains(&"--samples"), "{err}");
+    assert!(budgeted == turn("pinned", &options).1, "{err}");
+}
+
+#[test]
 fn options_of_axes_stay_fixed_and_are_not_printed_again() {
     let folder = folder();
     let folder = folder.path();
