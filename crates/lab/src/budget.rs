@@ -34,9 +34,10 @@ use self::model::{Step, predictions};
 /// FLIP raises it to the power 0.7 and divides it: (2.3^0.7) 0.95 / (0.4 41.3) = 0.10.
 pub const VISIBLE: f64 = 0.1;
 
-/// The time after which no other settings are tried, unless fewer pictures were drawn.
+/// The time after which no other settings are tried, and the one if fewer pictures were drawn.
 const SEARCHING: Duration = Duration::from_secs(1);
-const LEAST_PICTURES: usize = 120;
+const SEARCHING_SLOWLY: Duration = Duration::from_secs(4);
+const LEAST_PICTURES: usize = 40;
 
 /// The time for windows before the search, in each round of halving, and for the answer.
 const FIRST_WINDOWS: Duration = Duration::from_millis(300);
@@ -47,7 +48,13 @@ const REFINING: Duration = Duration::from_millis(1500);
 const COMPARING: Duration = Duration::from_secs(4);
 
 /// The settings that enter the first round of halving.
-const CONTENDERS: usize = 8;
+const CONTENDERS: usize = 4;
+
+/// The most settings that are refined before the goal is given up.
+const TRIES: usize = 24;
+
+/// Presets that take this many times as long as settings that reach the goal are not refined.
+const SLOW: f64 = 3.0;
 
 /// The predicted combinations that are measured in each round of the search.
 const PREDICTIONS: usize = 6;
@@ -61,8 +68,23 @@ const WORTHWHILE: f64 = 0.05;
 /// A squared error that is larger by this factor is no disadvantage: 1% of the error.
 const EQUAL: f64 = 1.02;
 
-/// The times that two choices are drawn in turn before one is preferred.
-const PAIRS: usize = 5;
+/// The times that two choices are drawn in turn before one is preferred, at least and at most, and
+/// the milliseconds after which that ends.
+const PAIRS: [usize; 2] = [2, 5];
+const PAIRING: f64 = 200.0;
+
+/// The axes that change times and errors most: they are tried first.
+const FIRST_AXES: [&str; 9] = [
+    "shading",
+    "transparency",
+    "shadow-method",
+    "light-samples",
+    "bounces",
+    "samples",
+    "resolution",
+    "filter",
+    "bumps",
+];
 
 /// What is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,7 +122,9 @@ pub fn search(
     let mut meter = Meter::new(source, clock, (shot, goal == Goal::Unseen), &guides);
     meter.look_for(FIRST_WINDOWS);
     let begun = meter.now();
-    Search { meter, shot, goal, free, begun }.run()
+    let matters = |axis: &&&Axis| (axis.sense)(&shot.scene, &shot.view).is_ok();
+    let fixed = fixed.iter().filter(matters).copied().collect();
+    Search { meter, shot, goal, free, fixed, begun }.run()
 }
 
 /// An axis whose choices are searched.
@@ -126,7 +150,9 @@ fn free_axes(shot: &Shot, fixed: &[&'static Axis]) -> Vec<FreeAxis> {
         };
         FreeAxis { axis, choices: axis.choices.iter().filter(is_tried).collect() }
     });
-    free.filter(|free| !free.choices.is_empty()).collect()
+    let mut free: Vec<FreeAxis> = free.filter(|free| !free.choices.is_empty()).collect();
+    free.sort_by_key(|free| !FIRST_AXES.contains(&free.axis.key));
+    free
 }
 
 /// Returns the settings of the shot, with the choices of `settings` for the free axes.
@@ -153,6 +179,8 @@ struct Search<'a> {
     shot: &'a Shot,
     goal: Goal,
     free: Vec<FreeAxis>,
+    /// The axes that keep their choices although others would matter.
+    fixed: Vec<&'static Axis>,
     begun: Duration,
 }
 
@@ -184,7 +212,7 @@ impl Search<'_> {
     fn climb(&mut self) {
         let shot = self.shot;
         let exact = AccuracyPreset::named("exact").map(|preset| preset.of(&shot.settings));
-        let lines = [Some(Settings::default()), Some(shot.settings), exact];
+        let lines = [Some(shot.settings), Some(Settings::default()), exact];
         let draft = Settings { resolution: Resolution::Half, ..Settings::default() };
         self.meter.measure(&merged(shot, &self.free, &draft));
         let samples = Samples::ALL.into_iter().filter(|it| *it != Samples::TwoFiftySix);
@@ -197,7 +225,10 @@ impl Search<'_> {
                     Goal::Within(most) => measured.ms.value > most,
                     Goal::Error(_) | Goal::Unseen => self.is_kept(&measured),
                 };
-                if is_enough || self.is_over() {
+                // Far slower settings than the best ones lead nowhere.
+                let best = self.best();
+                let is_slow = self.is_kept(&best) && measured.ms.value > SLOW * best.ms.value;
+                if is_enough || (is_slow && !matches!(self.goal, Goal::Within(_))) {
                     break;
                 }
             }
@@ -245,9 +276,10 @@ impl Search<'_> {
         let goal = self.goal;
         all.retain(|(settings, _)| is_sound(settings, &best.settings));
         all.sort_by(|a, b| compare(&rank(goal, a.1), &rank(goal, b.1)));
-        let mut left = PREDICTIONS;
+        // A few are measured even if single choices have taken all the time.
+        let mut left = if self.is_over() { PREDICTIONS / 2 } else { PREDICTIONS };
         for (settings, _) in all {
-            if left == 0 || self.is_over() {
+            if left == 0 {
                 break;
             }
             if self.meter.known(&settings).is_none() {
@@ -263,9 +295,7 @@ impl Search<'_> {
         rest.truncate(CONTENDERS);
         while rest.len() > 1 {
             self.meter.look_for(ROUND);
-            for _ in 0..2 {
-                rest = rest.iter().map(|it| self.meter.again(&it.settings)).collect();
-            }
+            rest = rest.iter().map(|it| self.meter.again(&it.settings)).collect();
             self.sort(&mut rest);
             rest.truncate(rest.len().div_ceil(2).min(rest.len() - 1));
         }
@@ -276,14 +306,15 @@ impl Search<'_> {
     fn settle(mut self) -> Answer {
         let mut tried: Vec<Settings> = Vec::new();
         let end = self.meter.looked() + REFINING;
-        while tried.len() <= CONTENDERS {
+        let tries = if self.goal == Goal::Unseen { CONTENDERS } else { TRIES };
+        while tried.len() < tries {
             let ranked = self.ranked();
             let open = |it: &&Measured| self.is_kept(it) && !tried.contains(&it.settings);
             let Some(next) = ranked.iter().find(open).map(|it| it.settings) else { break };
-            let next = self.plainer(next);
-            self.meter.refine(&next, end);
-            if self.is_sure(&next) {
-                let measured = self.meter.again(&next);
+            if self.is_sure(&next, end) {
+                let plainer = self.plainer(next);
+                let is_sure = plainer != next && self.is_sure(&plainer, end);
+                let measured = self.meter.steady(if is_sure { &plainer } else { &next });
                 if self.is_kept(&measured) {
                     return self.answer(measured, true);
                 }
@@ -304,13 +335,17 @@ impl Search<'_> {
 
     /// Returns whether refined figures reach the goal: the whole interval of an error does, or all
     /// windows with details were compared.
-    fn is_sure(&mut self, settings: &Settings) -> bool {
-        let Some(measured) = self.meter.known(settings) else { return false };
-        match self.goal {
-            Goal::Within(_) => self.is_kept(&measured),
-            Goal::Error(most) => measured.error.interval[1] <= most,
-            Goal::Unseen => self.meter.compare(settings, COMPARING, VISIBLE),
-        }
+    fn is_sure(&mut self, settings: &Settings, end: Duration) -> bool {
+        let measured = self.meter.again(settings);
+        self.is_kept(&measured)
+            && match self.goal {
+                Goal::Within(_) => {
+                    self.meter.sharpen(settings, end);
+                    true
+                }
+                Goal::Error(most) => self.meter.sharpen(settings, end).interval[1] <= most,
+                Goal::Unseen => self.meter.compare(settings, COMPARING, VISIBLE),
+            }
     }
 
     /// Replaces choices that do not pay by those of the default: the time must be noticeably
@@ -325,8 +360,13 @@ impl Search<'_> {
             let other = choice.of(&settings);
             // Drawn in turn, since the speed of the machine changes.
             let mut pair = [settings, other].map(|it| self.meter.again(&it));
-            for _ in 1..PAIRS {
+            let mut spent = 0.0;
+            for drawn in 1..PAIRS[1] {
+                if drawn >= PAIRS[0] && spent > PAIRING {
+                    break;
+                }
                 pair = [settings, other].map(|it| self.meter.again(&it));
+                spent += pair[0].ms.value + pair[1].ms.value;
             }
             let [ms, plain] = pair.map(|it| it.ms);
             let is_as_fast = plain.value <= ms.value * (1.0 + WORTHWHILE) || plain.overlaps(&ms);
@@ -341,16 +381,21 @@ impl Search<'_> {
     /// Returns the ideal, if the fixed axes allow it.
     fn ideal(&self) -> Option<Measured> {
         let ideal = self.shot.settings.ideal();
-        (merged(self.shot, &self.free, &ideal) == ideal).then(|| self.meter.ideal())
+        let is_exact = |axis: &&Axis| axis.chosen(&ideal).is(&self.shot.settings);
+        let settings = merged(self.shot, &self.free, &ideal);
+        self.fixed.iter().all(is_exact).then(|| Measured { settings, ..self.meter.ideal() })
     }
 
     fn answer(&self, measured: Measured, is_reached: bool) -> Answer {
-        Answer { measured, is_reached, compared: self.meter.compared() }
+        let is_ideal = self.ideal().is_some_and(|ideal| ideal.settings == measured.settings);
+        let compared = if is_ideal { 1.0 } else { self.meter.compared() };
+        Answer { measured, is_reached, compared }
     }
 
     /// Returns whether the search has had its time.
     fn is_over(&self) -> bool {
-        self.meter.now() > self.begun + SEARCHING && self.meter.drawn() >= LEAST_PICTURES
+        let spent = self.meter.now().saturating_sub(self.begun);
+        spent > SEARCHING && (spent > SEARCHING_SLOWLY || self.meter.drawn() >= LEAST_PICTURES)
     }
 
     fn best(&self) -> Measured {

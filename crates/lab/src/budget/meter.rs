@@ -13,7 +13,7 @@ use crate::flip::Perceived;
 use crate::picture_source::{PictureSource, cropped};
 use crate::strata::Strata;
 use crate::timing::{Clock, Work};
-use marraztu_core::accuracy::{Settings, Shot};
+use marraztu_core::accuracy::{AXES, Samples, Settings, Shot};
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_render::Renderer;
 use marraztu_render::screen::coverage::PixelBox;
@@ -29,8 +29,9 @@ const BATCH: usize = 8;
 const DRAWS: usize = 4;
 const QUICK: f64 = 20.0;
 
-/// The milliseconds spent on making a time certain.
-const STEADYING: f64 = 1000.0;
+/// The milliseconds spent on making a time certain, and the fewest times that a picture is drawn.
+const STEADYING: f64 = 400.0;
+const LEAST_DRAWS: usize = 3;
 
 /// Settings with their figures.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,6 +87,8 @@ pub(super) struct Meter<'a> {
     guides: Vec<Picture>,
     exact: BTreeMap<usize, Window>,
     known: Vec<Known>,
+    /// The choices that were drawn, by the keys of their axes.
+    seen: Vec<(&'static str, &'static str)>,
     drawn: usize,
     looked: Duration,
 }
@@ -119,6 +122,7 @@ impl<'a> Meter<'a> {
             guides,
             exact: BTreeMap::new(),
             known: Vec::new(),
+            seen: Vec::new(),
             drawn: 0,
             looked: Duration::ZERO,
         }
@@ -129,10 +133,16 @@ impl<'a> Meter<'a> {
         if let Some(measured) = self.known(settings) {
             return measured;
         }
-        let first = self.again(settings);
+        // A choice may build mipmaps or trees that later pictures reuse.
+        let choices = AXES.iter().map(|axis| (axis.key, axis.chosen(settings).word));
+        let fresh: Vec<_> = choices.filter(|choice| !self.seen.contains(choice)).collect();
+        if !fresh.is_empty() {
+            self.seen.extend(fresh);
+            self.source.draw(&Settings { samples: Samples::One, ..*settings });
+        }
         let mut last = self.again(settings);
-        let mut spent = first.ms.value + last.ms.value;
-        for _ in 2..DRAWS {
+        let mut spent = last.ms.value;
+        for _ in 1..DRAWS {
             if spent > QUICK {
                 break;
             }
@@ -206,21 +216,26 @@ impl<'a> Meter<'a> {
         self.exact.insert(part, Window { exact, outer, perceived });
     }
 
-    /// Measures settings further until their figures are certain, or windows have taken this time
-    /// in all.
-    pub(super) fn refine(&mut self, settings: &Settings, end: Duration) {
-        let mut measured = self.again(settings);
+    /// Compares settings with more windows until their error is certain, or windows have taken this
+    /// time in all.
+    pub(super) fn sharpen(&mut self, settings: &Settings, end: Duration) -> Estimate {
+        let mut error = self.again(settings).error;
+        while !error.is_within(ENOUGH) && self.looked < end && self.look_for(ROUND) {
+            error = self.again(settings).error;
+        }
+        error
+    }
+
+    /// Draws settings until their time is certain, or for a while.
+    pub(super) fn steady(&mut self, settings: &Settings) -> Measured {
         loop {
-            let spent: f64 = self.entry(settings).map_or(0.0, |it| it.times.iter().sum());
-            let draws = self.entry(settings).map_or(0, |it| it.times.len());
-            let is_steady = measured.ms.is_within(NARROW);
-            let draws_more = !is_steady && draws < MOST_DRAWS && spent < STEADYING;
-            let is_known = measured.error.is_within(ENOUGH) || self.looked >= end;
-            let looks_more = !is_known && self.look_for(ROUND);
-            if !draws_more && !looks_more {
-                return;
+            let measured = self.again(settings);
+            let times = self.entry(settings).map_or(&[][..], |known| &known.times);
+            let is_steady = measured.ms.is_within(NARROW) || times.len() >= MOST_DRAWS;
+            let is_enough = is_steady || times.iter().sum::<f64>() >= STEADYING;
+            if times.len() >= LEAST_DRAWS && is_enough {
+                return measured;
             }
-            measured = self.again(settings);
         }
     }
 
