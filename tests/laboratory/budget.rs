@@ -133,7 +133,7 @@ fn planted_shot() -> Shot {
     Shot::new(&scene, &view, &Settings::default().ideal(), SIZE)
 }
 
-fn shuffle(all: &mut Vec<usize>, rng: &mut Rng) {
+fn shuffle(all: &mut [usize], rng: &mut Rng) {
     for i in (1..all.len()).rev() {
         all.swap(i, rng.index(i + 1));
     }

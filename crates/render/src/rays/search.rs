@@ -63,7 +63,8 @@ impl LocalRay {
         }
     }
 
-    /// Transforms a ray to the space of a thing. `reach` is the largest coordinate in the space of rays.
+    /// Transforms a ray to the space of a thing. `reach` is the largest coordinate in the space of
+    /// rays.
     #[inline(always)]
     fn of(ray: &Ray, thing: &Thing<'_>, reach: f64) -> Self {
         let m = &thing.object_from_rays;

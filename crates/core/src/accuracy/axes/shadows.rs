@@ -80,7 +80,7 @@ pub(super) const LIGHT_SAMPLES: Axis = Axis {
             "Four points, others at each lit point.",
             "coarse noise along soft borders", |_, _| Ok(()), by_rays),
         choice!("16" "16" light_samples = LightSamples::Sixteen,
-            "Sixteen points, the first of which are those four.",
+            "Sixteen points; the first ones are those four.",
             "fine noise along soft borders", |_, _| Ok(()), by_rays),
         choice!("64" "64" light_samples = LightSamples::SixtyFour,
             "Sixty-four points.",
