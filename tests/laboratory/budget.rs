@@ -144,7 +144,8 @@ fn found(plants: &Plants, shot: &Shot, goal: Goal, fixed: &[&str]) -> Answer {
     let is_fixed = |key: &&str| !PLANTED.contains(key) || fixed.contains(key);
     let fixed: Vec<&Axis> = AXES.iter().filter(|axis| is_fixed(&axis.key)).collect();
     let picture = Picture::filled(shot.size, [100; 4]);
-    let (mut places, mut rng) = ((0..shot.size.area() / PLANTED.len()).collect(), Rng::new(9));
+    let (mut places, mut rng) =
+        ((0..shot.size.area() / PLANTED.len()).collect::<Vec<_>>(), Rng::new(9));
     shuffle(&mut places, &mut rng);
     let mut source = FakeSource { plants, picture, places, drawn: HashSet::new() };
     let mut clock = FakeClock(plants, Duration::ZERO);

@@ -437,12 +437,13 @@ mod tests {
 
     /// The examples and the scenes of the suite, without the ones with the slowest ideals.
     fn scenes() -> Vec<Shot> {
+        const SLOWEST: [&str; 5] = ["vertices", "layers", "bumps", "soft", "mirrors"];
         let size = Size::new(208, 120);
         let examples = EXAMPLES.iter().map(|example| {
             let opened = marraztu_io::open(example.path.as_ref(), &Progress::new()).unwrap();
             Shot::new(&opened.scene, &opened.view, &opened.settings, size)
         });
-        let suite = SUITE.iter().filter(|it| !["vertices", "layers", "bumps"].contains(&it.word));
+        let suite = SUITE.iter().filter(|it| !SLOWEST.contains(&it.word));
         let suite = suite.map(|suite| {
             let (scene, view) = suite.open(100);
             Shot::new(&scene, &view, &Settings::default(), size)
