@@ -412,7 +412,7 @@ actions! {
         "Only this light" "Switches off all lights but this one; pressed again, restores them."
         "solo isolate single mute others";
     LightStudio Light ONCE []
-        "Studio lights" "Replaces all lights by a sky with occlusion and a large lamp with soft shadows."
+        "Studio lights" "Replaces all lights by a sky with occlusion and a large soft lamp."
         "look ambient occlusion soft shadows beautiful render setup preset";
     FitExposure Light ONCE []
         "Fit exposure" "Sets the highest exposure that does not overexpose surfaces."
