@@ -19,6 +19,8 @@ pub(crate) struct Shadows {
     pub(crate) sources: Vec<Option<ShadowSource>>,
     /// The radius of each light of the plan in the world, if it is a ball; 0 for points.
     pub(crate) radii: Vec<f64>,
+    /// The samples of a ball or of the sky for each point that is lit.
+    pub(crate) samples: u32,
     /// The casters, the oldest first.
     pub(crate) casters: Vec<Caster>,
 }

@@ -13,9 +13,21 @@ use super::maps::holds_same_alpha;
 use super::planning::{Ground, Planner, Planning, Shining};
 use super::rules::TexturedSurface;
 use super::uses::{Effect, EffectState, EffectUse, Thing};
+use crate::frame::FramePlan;
 use crate::frame::shadows::{Caster, CasterPart, Holes, Shadows};
 use marraztu_core::base::math;
 use marraztu_core::scene::{Fill, ItemId, MapKind, Object, ObjectId};
+
+/// The fewest samples of a light for each sample of a pixel, unless fewer are chosen.
+const LEAST_SAMPLES: u32 = 16;
+
+/// Returns the samples of a light for each point. Samples of a pixel that are lit one by one share
+/// those of the pixel.
+fn light_samples(plan: &FramePlan) -> u32 {
+    let chosen = plan.variants.light_samples.count();
+    let lit = if plan.lit_by_sample { plan.samples.count() } else { 1 };
+    (chosen / lit).max(chosen.min(LEAST_SAMPLES))
+}
 
 impl Planner<'_> {
     /// Adds the casters, if any light casts shadows.
@@ -28,6 +40,7 @@ impl Planner<'_> {
             objects.retain(|(id, object)| self.not_asked_for(*id, object).is_none());
             let casters = objects.into_iter().filter_map(|(id, object)| self.caster(id, object));
             into.plan.shadows.casters = casters.collect();
+            into.plan.shadows.samples = light_samples(&into.plan);
         }
         if into.plan.shadows.casters.is_empty() {
             into.plan.shadows = Shadows::default();

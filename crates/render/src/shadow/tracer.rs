@@ -178,7 +178,7 @@ impl<'a> Tracer<'a> {
         let Some(things) = things.collect::<Option<Vec<_>>>() else { return self };
         self.things = Things::new(things);
         self.view_from_world = DMat3::from_mat4(plan.view_from_world);
-        let samples = plan.variants.light_samples.count();
+        let samples = plan.shadows.samples;
         let sky = |(light, source): (u32, &Option<ShadowSource>)| {
             let own = &plan.lights[light as usize];
             let is_sky =

@@ -49,6 +49,7 @@ fn shadows_of(casters: &[(Vec<[Point; 3]>, Point)], light: Point) -> Shadows {
     };
     Shadows {
         radii: Vec::new(),
+        samples: 1,
         sources: vec![Some(ShadowSource::Point(float(light)))],
         casters: casters.iter().enumerate().map(caster).collect(),
     }
