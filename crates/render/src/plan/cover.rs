@@ -2,7 +2,7 @@
 //! drawn.
 
 use marraztu_core::accuracy::Transparency;
-use marraztu_core::scene::{MapKind, Object, PartLook};
+use marraztu_core::scene::{MapKind, PartLook};
 
 /// The way a part of an object covers the surfaces behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,14 +44,5 @@ impl Cover {
                 }
             }
         }
-    }
-
-    /// Returns whether a visible part of an object is transparent.
-    pub(super) fn is_any_transparent(object: &Object, transparency: Transparency) -> bool {
-        let textured = !object.model.mesh.uvs().is_empty();
-        object.shown_parts().any(|part| {
-            let cover = Self::of(&object.part_look(part), textured, transparency);
-            matches!(cover, Self::Transparent(_))
-        })
     }
 }

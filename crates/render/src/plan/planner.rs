@@ -147,6 +147,17 @@ impl Planner<'_> {
         [view_from_object, clip_from_view * view_from_object]
     }
 
+    /// Returns whether a visible part of an object is transparent, other than by rays.
+    fn is_any_transparent(&self, object: &Object) -> bool {
+        let textured = !object.model.mesh.uvs().is_empty();
+        object.shown_parts().any(|part| {
+            let mut look = object.part_look(part);
+            self.settle_transmission(object, &mut look);
+            let cover = Cover::of(&look, textured, self.shot.settings.transparency);
+            matches!(cover, Cover::Transparent(_))
+        })
+    }
+
     /// Adds the draw of an object, or of a helper converted to one, unless nothing of it is
     /// visible.
     fn add(&self, into: &mut Planning, object: &Object, mut draw: Draw) {
@@ -156,11 +167,7 @@ impl Planner<'_> {
             return left_out(into, item, &object.name, "it has no vertices");
         };
         // Decides which faces are drawn before anything else is decided about the object.
-        let transparency = self.shot.settings.transparency;
-        if draw.back == Back::Culled
-            && draw.filled
-            && Cover::is_any_transparent(object, transparency)
-        {
+        if draw.back == Back::Culled && draw.filled && self.is_any_transparent(object) {
             // The back is visible through its transparent front.
             (draw.back, draw.culls_opaque) = (Back::Lit, true);
         }

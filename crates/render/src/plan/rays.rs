@@ -7,13 +7,13 @@ use crate::frame::FramePlan;
 use crate::frame::extras::SurfaceRays;
 use crate::lights::PhongMaterial;
 use marraztu_core::accuracy::{Bounces, LightAt, Settings};
-use marraztu_core::scene::{MapKind, Optics, PartLook, Reflection, Surface, Transmission};
+use marraztu_core::scene::{MapKind, Object, Optics, PartLook, Reflection, Surface, Transmission};
 
 impl Planner<'_> {
     /// Rays show what the opacity of a part leaves, if its material says so: the part is then
     /// opaque, and its own colour is weaker.
-    pub(super) fn settle_transmission(&self, ground: &Ground<'_>, look: &mut PartLook<'_>) {
-        let is_lit = ground.object.surface != Surface::Texture && !look.unlit;
+    pub(super) fn settle_transmission(&self, object: &Object, look: &mut PartLook<'_>) {
+        let is_lit = object.surface != Surface::Texture && !look.unlit;
         let material = &mut look.material;
         let casts = is_lit && self.shot.settings.bounces != Bounces::None;
         if casts && material.optics.transmission == Transmission::Opacity {

@@ -43,7 +43,7 @@ impl Planner<'_> {
         if linear {
             look.material = decoded(&look.material);
         }
-        self.settle_transmission(ground, &mut look);
+        self.settle_transmission(object, &mut look);
         let cover = Cover::of(&look, textured, settings.transparency);
         if cover == Cover::Nothing {
             return None;
