@@ -137,6 +137,32 @@ fn more_samples_come_closer_and_the_mean_stays() {
     }
 }
 
+/// 256 samples of a light for each of 16 samples of a pixel would be 4096 rays.
+#[test]
+fn samples_of_a_pixel_that_are_lit_one_by_one_share_the_samples_of_a_light() {
+    let (mut scene, view) = screen();
+    light(&mut scene, sun(DVec3::new(1.0, 0.0, 2.0)), 90.0);
+    let drawn = |samples, light_samples, at| {
+        let settings = Settings { samples, light_samples, light: at, ..Settings::default() };
+        draw(&scene, &view, &settings, 32)
+    };
+    let by_sample = |samples, of| drawn(samples, of, LightAt::Sample);
+    for (samples, shared) in [
+        (Samples::Sixteen, LightSamples::TwoFiftySix),
+        (Samples::SixtyFour, LightSamples::SixtyFour),
+    ] {
+        let each = by_sample(samples, LightSamples::Sixteen);
+        assert!(by_sample(samples, shared) == each, "{samples:?} {shared:?}");
+    }
+    // A fourth of 256 is more than 16, fewer than 16 stay as they are, and light at pixels has all
+    // of its samples.
+    let [few, some, many] = [LightSamples::Four, LightSamples::Sixteen, LightSamples::TwoFiftySix]
+        .map(|of| by_sample(Samples::Four, of));
+    assert!(few != some && some != many);
+    let whole = |of| drawn(Samples::Sixteen, of, LightAt::Pixel);
+    assert!(whole(LightSamples::TwoFiftySix) != whole(LightSamples::Sixteen));
+}
+
 #[test]
 fn points_hard_methods_and_lights_without_shadows_ignore_the_size() {
     let opened = io::lesson_scene("soft").unwrap();

@@ -88,7 +88,7 @@ impl Planner<'_> {
             return;
         }
         let is_mark = !matches!(ground.item, ItemId::Object(_));
-        let samples = into.plan.variants.light_samples.count();
+        let samples = into.plan.shadows.samples;
         let method: Cow<'static, str> = match into.plan.variants.shadow_method.map() {
             None if into.plan.shadows.radius(shining.light) > 0.0 => {
                 format!("soft, {samples} samples").into()
