@@ -114,8 +114,8 @@ class Light(NamedTuple):
     shadows: bool = False
     """Whether objects cast shadows in this light."""
     size: float = 0.0
-    """With shadows, the extent of the light, which makes them soft: the radius of a bulb or spot, or
-    the angular diameter of a sun in radians."""
+    """With shadows, the extent of the light, which makes them soft: the radius of a bulb or
+    spot, or the angular diameter of a sun in radians."""
     ground: tuple[int, int, int] = (0, 0, 0)
     """Of a sky: the colour below the horizon."""
     position: Triple | None = None
