@@ -14,6 +14,7 @@ use marraztu_core::scene::{Command, Item, MaterialChoice, Scene, View};
 use marraztu_io as io;
 use marraztu_lab::error::Error;
 use marraztu_lab::picture_source::{PictureSource as _, Studio};
+use marraztu_lab::suite::SUITE;
 use marraztu_render::plan_frame;
 use marraztu_render::screen::coverage::PixelBox;
 use marraztu_render::{PathPixels, Renderer};
@@ -130,6 +131,34 @@ fn the_ideal_of_a_window_is_that_of_the_whole_picture_and_nothing_is_more_exact(
     let errors = [Samples::One, Samples::Four, Samples::Sixteen, Samples::SixtyFour]
         .map(|samples| error(&mut studio, samples));
     assert!(errors.windows(2).all(|two| two[1] < 0.7 * two[0]), "{errors:?}");
+}
+
+/// Slow pictures are compared with the ideal in such windows.
+#[test]
+fn a_window_shows_the_same_as_the_whole_picture() {
+    const WINDOWS: [[i32; 4]; 3] = [[20, 30, 75, 64], [64, 7, 72, 15], [149, 89, 150, 90]];
+    let exact = preset("exact");
+    for suite in SUITE {
+        let (scene, view) = suite.open(20);
+        for settings in [preset("default"), preset("default").refined(), exact, exact.refined()] {
+            let plan = plan_frame(&Shot::new(&scene, &view, &settings, Size::new(150, 90)));
+            let mut renderer = Renderer::default();
+            let whole = renderer.render(&plan).clone();
+            for [left, top, right, bottom] in WINDOWS {
+                let window = PixelBox { left, top, right, bottom };
+                let part = renderer.render_window(&plan, window, &|| true).unwrap();
+                let at = |x: i32| usize::try_from(x).unwrap();
+                for (y, x) in (top..bottom).flat_map(|y| (left..right).map(move |x| (y, x))) {
+                    let own = part.pixel(at(x - left), at(y - top));
+                    let other = whole.pixel(at(x), at(y));
+                    // Coordinates of a window are smaller, and rounded less.
+                    let same = (0..3).all(|i| own[i].abs_diff(other[i]) <= 1);
+                    let (name, how) = (suite.word, settings.in_words());
+                    assert!(same, "{name}, {how}: {own:?} for {other:?} at {x}, {y}");
+                }
+            }
+        }
+    }
 }
 
 /// The resolution of light before rounding, in parts of a byte step.

@@ -6,7 +6,12 @@
 //! from strata of similar detail. Each figure has its interval, and is measured
 //! further while that is wide.
 //!
+//! A picture that takes seconds is not drawn as a whole: its time is that of smaller ones, and its
+//! error is that of windows alone.
+//!
 //! The work is divided into short steps, so an idle editor can measure and stop at any time.
+
+mod drawn;
 
 use std::time::{Duration, Instant};
 
@@ -14,20 +19,21 @@ use serde::{Deserialize, Serialize};
 
 use super::estimate::Estimate;
 use super::strata::Strata;
-use marraztu_core::accuracy::{AccuracyPreset, Samples, Settings, Shot};
+use drawn::Drawn;
+use marraztu_core::accuracy::{AccuracyPreset, LightSamples, Samples, Settings, Shot};
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_render::screen::coverage::PixelBox;
 use marraztu_render::{Cancelled, FramePlan, Renderer, plan_frame};
 
-/// The side of a window in pixels.
+/// The side of a window in pixels, and where any picture is slow: then each pixel of the ideal is.
 const WINDOW: usize = 16;
+const SLOW_WINDOW: usize = 8;
 
 /// The times that each picture is drawn, if that is quick.
 const DRAWS: usize = 5;
 
-/// The most times that it is drawn while its time is uncertain, and the time spent on that.
+/// The most times that it is drawn while its time is uncertain.
 pub(crate) const MOST_DRAWS: usize = 30;
-const STEADYING: Duration = Duration::from_secs(2);
 
 /// The time for drawing pictures and the time for drawing windows before the first figures.
 const DRAWING: Duration = Duration::from_millis(300);
@@ -151,15 +157,6 @@ pub struct Dial {
     told: Duration,
 }
 
-#[derive(Debug)]
-struct Drawn {
-    settings: Settings,
-    plan: FramePlan,
-    /// The milliseconds of each time that it was drawn.
-    times: Vec<f64>,
-    picture: Picture,
-}
-
 /// The windows of the ideal that were drawn so far. Their figures are the milliseconds, and the
 /// squared error of each picture.
 #[derive(Debug)]
@@ -184,13 +181,10 @@ impl Dial {
     /// Prepares to measure pictures of a shot with these settings.
     pub fn new(shot: &Shot, all: &[Settings]) -> Self {
         let ideal = shot.settings.ideal();
-        let pictures = all.iter().filter(|settings| **settings != ideal).map(|settings| Drawn {
-            settings: *settings,
-            plan: plan_frame(&shot.with(*settings)),
-            times: Vec::new(),
-            picture: Picture::default(),
-        });
-        let rough = plan_frame(&shot.with(Settings::default().modelled_as(&shot.settings)));
+        let others = all.iter().filter(|settings| **settings != ideal);
+        let pictures = others.map(|settings| Drawn::new(shot.with(*settings)));
+        let rough = Settings { light_samples: LightSamples::One, ..Settings::default() };
+        let rough = plan_frame(&shot.with(rough.modelled_as(&shot.settings)));
         let (pictures, plan) = (pictures.collect(), plan_frame(&shot.with(ideal)));
         Self { plan, rough, pictures, ideal, sample: None, told: Duration::ZERO }
     }
@@ -207,10 +201,17 @@ impl Dial {
         let drawing: Duration = self.pictures.iter().map(Drawn::spent).sum();
         // First figures come soon: each picture once, a few times if it is quick, then windows.
         let draws = if drawing > DRAWING { 1 } else { DRAWS };
-        let due = self.pictures.iter_mut().filter(|it| it.times.len() < draws);
-        if let Some(next) = due.min_by_key(|it| it.times.len()) {
+        if let Some(next) =
+            self.pictures.iter_mut().filter(|it| it.draws() < draws).min_by_key(|it| it.draws())
+        {
             next.draw(renderer, wanted)?;
-            return Ok(Step::More);
+            // The errors of slow pictures take long, so their times are told before.
+            let are_timed = self.pictures.iter().all(|it| it.draws() > 0);
+            let is_news = are_timed && self.told.is_zero() && self.is_slow();
+            if is_news {
+                self.told = drawing.max(BETWEEN);
+            }
+            return Ok(if is_news { Step::Better } else { Step::More });
         }
         if self.sample.is_none() {
             self.sample = Some(Sample::new(&self.pictures, &self.rough, renderer, wanted)?);
@@ -220,7 +221,7 @@ impl Dial {
         let begins = !sample.strata.is_begun() || (!is_good && sample.spent < SAMPLING);
         // Then both become better, in turn.
         let unsteady = self.pictures.iter_mut().filter(|it| !begins && it.is_unsteady());
-        let unsteady = unsteady.min_by_key(|it| it.times.len());
+        let unsteady = unsteady.min_by_key(|it| it.draws());
         let draws = begins || (!is_good && sample.spent < REFINING);
         match unsteady {
             Some(next) if !draws || drawing < sample.spent => next.draw(renderer, wanted)?,
@@ -245,8 +246,8 @@ impl Dial {
         let sample = self.sample.as_ref().filter(|sample| sample.strata.is_begun());
         let pixels = self.plan.size().area();
         let drawn = self.pictures.iter().enumerate().map(|(i, it)| Figures {
-            settings: it.settings,
-            ms: Estimate::of_times(&it.times).unwrap_or(Estimate::exact(f64::INFINITY)),
+            settings: it.settings(),
+            ms: it.ms().unwrap_or(Estimate::exact(f64::INFINITY)),
             error: sample.map(|sample| sample.rmse(i, pixels)),
         });
         let ideal = sample.map(|sample| Figures {
@@ -256,33 +257,9 @@ impl Dial {
         });
         drawn.chain(ideal).collect()
     }
-}
 
-impl Drawn {
-    fn draw(
-        &mut self,
-        renderer: &mut Renderer,
-        wanted: &(dyn Fn() -> bool + Sync),
-    ) -> Result<(), Cancelled> {
-        let begun = Instant::now();
-        let picture = renderer.render_while(&self.plan, wanted)?;
-        let time = begun.elapsed().as_secs_f64() * 1e3;
-        if self.times.is_empty() {
-            self.picture = picture.clone();
-        }
-        self.times.push(time);
-        Ok(())
-    }
-
-    fn spent(&self) -> Duration {
-        Duration::from_secs_f64(self.times.iter().sum::<f64>() / 1e3)
-    }
-
-    /// Returns whether drawing it again would tell its time better.
-    fn is_unsteady(&self) -> bool {
-        let is_narrow = Estimate::of_times(&self.times).is_some_and(|ms| ms.is_within(NARROW));
-        let is_enough = self.times.len() >= MOST_DRAWS || self.spent() >= STEADYING;
-        self.times.len() < 2 || !(is_narrow || is_enough)
+    fn is_slow(&self) -> bool {
+        self.pictures.iter().any(Drawn::is_slow)
     }
 }
 
@@ -295,10 +272,11 @@ impl Sample {
         renderer: &mut Renderer,
         wanted: &(dyn Fn() -> bool + Sync),
     ) -> Result<Self, Cancelled> {
-        let windows: Vec<PixelBox> = windows(rough.size(), WINDOW).collect();
+        let side = if pictures.iter().any(Drawn::is_slow) { SLOW_WINDOW } else { WINDOW };
+        let windows: Vec<PixelBox> = windows(rough.size(), side).collect();
         let rough = renderer.render_while(rough, wanted)?;
-        let all: Vec<&Picture> =
-            pictures.iter().map(|it| &it.picture).chain(std::iter::once(rough)).collect();
+        let whole = pictures.iter().filter_map(Drawn::picture);
+        let all: Vec<&Picture> = whole.chain(std::iter::once(rough)).collect();
         let strata = Strata::new(&details(&all, &windows), 1);
         Ok(Self { windows, strata, spent: Duration::ZERO })
     }
@@ -314,11 +292,12 @@ impl Sample {
         let Some(next) = self.strata.next() else { return Ok(false) };
         let (window, begun) = (self.windows[next], Instant::now());
         let exact = renderer.render_window(plan, window, wanted)?;
-        let time = begun.elapsed();
-        let errors = pictures.iter().map(|it| squares_within(&it.picture, &exact, &window));
-        let figures = std::iter::once(time.as_secs_f64() * 1e3).chain(errors).collect();
+        let mut figures = vec![begun.elapsed().as_secs_f64() * 1e3];
+        for drawn in pictures {
+            figures.push(drawn.squares(&exact, window, renderer, wanted)?);
+        }
         self.strata.note(next, figures);
-        self.spent += time;
+        self.spent += begun.elapsed();
         Ok(true)
     }
 

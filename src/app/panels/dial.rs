@@ -122,6 +122,7 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let said = in_words(state.dial.figures()).filter(|_| state.dial.current);
     let waits_for = match state.lab.running {
         Some(_) => "Paused while the laboratory measures.",
+        None if state.dial.current => "Comparing parts of the pictures with the ideal...",
         None => "Measured as soon as nothing moves.",
     };
     let said = said.unwrap_or_else(|| waits_for.to_owned());

@@ -128,10 +128,11 @@ impl FramePlan {
         self.variants.raster_mode()
     }
 
-    /// Returns the plan of the picture seen by one sample of each pixel, `shift` subpixels from the
-    /// centre: right and down, in 1/256 pixel.
+    /// Returns the plan of the picture seen by one sample of each pixel, `right` and `down` from
+    /// the centre, in 1/256 pixel.
     #[must_use]
-    pub fn seen_from(&self, shift: [i32; 2]) -> Self {
+    pub fn seen_from(&self, [right, down]: [i32; 2]) -> Self {
+        let shift = [self.shift[0] + right, self.shift[1] + down];
         Self { shift, ..self.clone() }
     }
 
@@ -139,6 +140,12 @@ impl FramePlan {
     /// pictures are drawn larger and averaged.
     pub(crate) fn is_supersampled(&self) -> bool {
         self.lit_by_sample && self.samples == Samples::TwoFiftySix
+    }
+
+    /// Returns whether a part of the picture can be drawn alone. Enlarged pictures are whole.
+    #[must_use]
+    pub const fn has_windows(&self) -> bool {
+        self.enlarged.is_none()
     }
 
     /// Returns whether any surface mirrors or refracts.

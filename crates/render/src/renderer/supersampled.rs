@@ -1,4 +1,4 @@
-//! Draws pictures with 256 samples per pixel, each lit (supersampling).
+//! Draws pictures with 256 samples per pixel, each lit (supersampling), and parts of any picture.
 //!
 //! The picture is drawn 16 times as wide and high, with one sample per pixel, and each square of 16
 //! x 16 pixels is averaged. Textures are therefore filtered for a sample, not for a whole pixel,
@@ -30,21 +30,24 @@ const LOG2: u32 = 8;
 const WINDOW: i32 = 2 * TILE;
 
 impl Renderer {
-    /// Draws a window of a picture with 256 samples per pixel, without the rest of the picture.
+    /// Draws a window of a picture without the rest of it.
     ///
     /// # Errors
     /// [`Cancelled`] if `wanted`, which every thread calls between tiles, returns false.
     ///
     /// # Panics
-    /// If the plan has fewer samples per pixel, or does not light each of them.
+    /// If the plan has no windows ([`FramePlan::has_windows`]).
     pub fn render_window(
         &mut self,
         plan: &FramePlan,
         window: PixelBox,
         wanted: &(dyn Fn() -> bool + Sync),
     ) -> Result<Picture, Cancelled> {
-        assert!(plan.is_supersampled(), "only the ideal is drawn in windows");
+        assert!(plan.has_windows(), "an enlarged picture has no windows");
         let size = size_of(window);
+        if !plan.is_supersampled() {
+            return Ok(self.render_while(&part_of(plan, window), wanted)?.clone());
+        }
         let mut picture = Picture::filled(size, plan.background.opaque());
         for part in windows(window) {
             let colors = self.averaged(plan, part, wanted)?;
@@ -117,6 +120,13 @@ impl Renderer {
         });
         Ok(colors)
     }
+}
+
+/// Returns the plan of a window of a picture that is drawn as it is.
+fn part_of(plan: &FramePlan, window: PixelBox) -> FramePlan {
+    // The window's corner becomes the first pixel.
+    let shift = [window.left, window.top].map(|at| at * SUBPIXELS);
+    FramePlan { size: size_of(window), shift, ..plan.clone() }
 }
 
 /// Returns the plan of a window in which each pixel has become a square of pixels with one sample

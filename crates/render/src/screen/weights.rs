@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::clip::{Screen, ScreenVertex};
 use super::clipped_weights::ClippedWeights;
-use super::coverage::Triangle;
+use super::coverage::{SUBPIXELS, Triangle};
 use super::homogeneous::{barycentric, with_first};
 use crate::frame::FramePlan;
 use crate::frame::draw::Draw;
@@ -207,5 +207,6 @@ pub(crate) fn cut_place(plan: &FramePlan, draw: &Draw, number: u32, weights: DVe
     let [x, y, w] = [0, 1, 3].map(|i| weights.dot(DVec3::from_array(corners.map(|c| c[i]))));
     let w = if w == 0.0 { 1.0 } else { w };
     let half = [plan.viewport.width / 2.0, plan.viewport.height / 2.0];
-    [(x / w + 1.0) * half[0], (1.0 - y / w) * half[1]]
+    let [right, down] = plan.shift.map(|shift| f64::from(shift) / f64::from(SUBPIXELS));
+    [(x / w + 1.0) * half[0] - right, (1.0 - y / w) * half[1] - down]
 }
