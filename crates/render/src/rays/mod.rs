@@ -13,11 +13,13 @@
 //! Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection", JCGT 2013; Ize, "Robust BVH Ray
 //! Traversal", JCGT 2013.
 
+mod frontier;
 mod search;
 mod things;
 
 use glam::DVec3;
 
+pub(crate) use frontier::{Ends, Frontier};
 pub(crate) use search::RayStack;
 pub(crate) use things::{Thing, Things};
 

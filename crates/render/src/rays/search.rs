@@ -1,10 +1,14 @@
 //! Searches the trees of things for the surfaces that a ray meets.
+//!
+//! Many rays that run to one light share a [`Frontier`]: the parts of the trees that any of them
+//! may meet. Each ray searches these alone.
 
 use fearless_simd::{Simd, SimdBase as _, SimdMask as _, f32x8, f64x8};
 use glam::DVec3;
 
+use super::frontier::Frontier;
 use super::{Corners, Hit, OwnTriangles, Ray, Thing, Things};
-use crate::accel::{BVH_BLOCK, BvhBlock, BvhChild, EightBoxes};
+use crate::accel::{BVH_BLOCK, BvhBlock, BvhChild, BvhNode, EightBoxes};
 use crate::simd::{Bits, Vec3};
 use marraztu_core::base::math::each;
 
@@ -17,13 +21,13 @@ pub(crate) struct RayStack(Vec<(BvhChild, f32)>);
 
 /// The error of a position and of a parameter in f32, relative to the largest coordinate: four
 /// roundings, twice.
-const SINGLE: f64 = 1.0 / (1 << 21) as f64;
+pub(super) const SINGLE: f64 = 1.0 / (1 << 21) as f64;
 
 /// The error of a position transformed in f64, relative to the sum of the added terms.
-const DOUBLE: f64 = 1.0 / (1_u64 << 47) as f64;
+pub(super) const DOUBLE: f64 = 1.0 / (1_u64 << 47) as f64;
 
 /// The smallest component of a direction, relative to its largest.
-const LEAST: f64 = 1e-30;
+pub(super) const LEAST: f64 = 1e-30;
 
 /// A ray in the space of an object, or in its own, for boxes in f32 and triangles in f64.
 #[derive(Clone, Copy, Debug)]
@@ -127,6 +131,32 @@ impl Things<'_> {
         best.is_some()
     }
 
+    /// Returns the same as [`Self::stop`] for a ray of a frontier.
+    #[inline(always)]
+    pub(crate) fn stop_within<S: Simd>(
+        &self,
+        simd: S,
+        (ray, distance, frontier): (&Ray, f64, &Frontier),
+        stops: Stops<'_>,
+        stack: &mut RayStack,
+    ) -> bool {
+        let (own, mut best) = (Own { things: self, ray }, None);
+        for (index, nodes) in frontier.things() {
+            let thing = &self.all[index as usize];
+            let local = LocalRay::of(ray, thing, self.reach);
+            let of = Search { index, thing, local: &local, own: &own, stops, most: distance };
+            stack.0.clear();
+            for node in nodes {
+                of.list::<S, true>(simd, node, distance, &mut stack.0);
+            }
+            of.run::<S, true>(simd, stack, &mut best);
+            if best.is_some() {
+                return true;
+            }
+        }
+        false
+    }
+
     /// Searches for the nearest point up to a distance, or for `ANY`.
     #[inline(always)]
     fn search<S: Simd, const ANY: bool>(
@@ -136,7 +166,7 @@ impl Things<'_> {
         stack: &mut RayStack,
         (most, best): (f64, &mut Option<Hit>),
     ) {
-        let own = Own::new(self, ray);
+        let own = Own { things: self, ray };
         let around = LocalRay::new((ray.from, ray.towards), DVec3::splat(self.reach), DVec3::ZERO);
         for (group, boxes) in self.boxes.iter().enumerate() {
             let (met, _) = around.meeting(simd, boxes, distance_of(best.as_ref(), most));
@@ -146,6 +176,8 @@ impl Things<'_> {
                 let local = LocalRay::of(ray, thing, self.reach);
                 let index = u32::try_from(index).unwrap_or(u32::MAX);
                 let of = Search { index, thing, local: &local, own: &own, stops, most };
+                stack.0.clear();
+                stack.0.push((thing.tree.root, 0.0));
                 of.run::<S, ANY>(simd, stack, best);
                 if ANY && best.is_some() {
                     return;
@@ -167,7 +199,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Searches the tree for a nearer point.
+    /// Searches the listed parts of the tree for a nearer point.
     #[inline(always)]
     fn run<S: Simd, const ANY: bool>(
         &self,
@@ -176,8 +208,6 @@ impl Search<'_> {
         best: &mut Option<Hit>,
     ) {
         let Self { thing, local, most, .. } = *self;
-        stack.clear();
-        stack.push((thing.tree.root, 0.0));
         while let Some((child, enters)) = stack.pop() {
             // A nearer point may have been found since the box was listed.
             let nearest = distance_of(best.as_ref(), most);
@@ -192,17 +222,29 @@ impl Search<'_> {
                 continue;
             }
             let Some(node) = thing.tree.nodes.get(child.first as usize) else { continue };
-            let (met, near) = local.meeting(simd, &node.boxes, nearest);
-            let near: [f32; EightBoxes::COUNT] = near.into();
-            let first = stack.len();
-            for i in Bits(met) {
-                // The nearest child is visited first: insertion sort, the farthest at the bottom.
-                let mut at = stack.len();
-                stack.push((node.children[i], near[i]));
-                while at > first && stack[at - 1].1 < stack[at].1 {
-                    stack.swap(at - 1, at);
-                    at -= 1;
-                }
+            self.list::<S, ANY>(simd, node, nearest, stack);
+        }
+    }
+
+    /// Lists the children of a node that the ray meets up to a distance.
+    #[inline(always)]
+    fn list<S: Simd, const ANY: bool>(
+        &self,
+        simd: S,
+        node: &BvhNode,
+        nearest: f64,
+        stack: &mut Vec<(BvhChild, f32)>,
+    ) {
+        let (met, near) = self.local.meeting(simd, &node.boxes, nearest);
+        let near: [f32; EightBoxes::COUNT] = near.into();
+        let first = stack.len();
+        for i in Bits(met) {
+            let mut at = stack.len();
+            stack.push((node.children[i], near[i]));
+            // The nearest child is visited first: insertion sort, the farthest at the bottom.
+            while !ANY && at > first && stack[at - 1].1 < stack[at].1 {
+                stack.swap(at - 1, at);
+                at -= 1;
             }
         }
     }
@@ -254,50 +296,39 @@ impl Hit {
 
 /// The triangles that a ray starts on.
 struct Own<'a> {
+    things: &'a Things<'a>,
     ray: &'a Ray,
-    /// The corners of the triangle of a rounded point.
-    corners: Option<Corners>,
-    flat: f64,
-    /// The distance within which rounding may decide that a ray meets something.
-    close: f64,
 }
 
 /// The rounding of a start, relative to the largest coordinate.
 const ROUNDED: f64 = 1.0 / (1_u64 << 40) as f64;
 
-impl<'a> Own<'a> {
-    fn new(things: &Things<'_>, ray: &'a Ray) -> Self {
-        let far = things.reach.max(ray.from.abs().max_element());
-        let rounded = ray.own.filter(|own| own.is_rounded);
-        let thing = rounded.map(|own| (own, &things.all[own.thing as usize]));
-        let Some((own, thing)) = thing else {
-            return Self { ray, corners: None, flat: 0.0, close: far * ROUNDED };
-        };
-        let corners = thing.corners(own.first);
-        let [p, q, r] = corners;
-        let size = (q - p).abs().max((r - p).abs()).max_element();
-        Self { ray, corners: Some(corners), flat: thing.flat, close: 2.0 * size }
-    }
-
+impl Own<'_> {
     /// Returns whether the ray can meet a triangle: it is another one, and the first triangle
     /// reaches to the side of its plane that the ray comes from.
     fn may_meet(&self, hit: &Hit, thing: &Thing<'_>) -> bool {
+        let Self { things, ray } = *self;
         let is_own = |own: OwnTriangles| {
             own.thing == hit.thing && (own.first..own.end).contains(&hit.triangle)
         };
-        if self.ray.own.is_some_and(is_own) {
+        if ray.own.is_some_and(is_own) {
             return false;
         }
         // Far away, rounding decides nothing.
-        if hit.distance > self.close {
+        let Some(own) = ray.own.filter(|own| own.is_rounded) else {
+            return hit.distance > things.reach.max(ray.from.abs().max_element()) * ROUNDED;
+        };
+        let of = &things.all[own.thing as usize];
+        let corners: Corners = of.corners(own.first);
+        let [p, q, r] = corners;
+        if hit.distance > 2.0 * (q - p).abs().max((r - p).abs()).max_element() {
             return true;
         }
-        let Some(own) = &self.corners else { return false };
         let [a, b, c] = thing.corners(hit.triangle);
         let normal = (b - a).cross(c - a);
-        let side = if normal.dot(self.ray.towards) > 0.0 { -1.0 } else { 1.0 };
-        let least = self.flat.max(thing.flat) * normal.length();
-        own.iter().any(|corner| side * normal.dot(*corner - a) > least)
+        let side = if normal.dot(ray.towards) > 0.0 { -1.0 } else { 1.0 };
+        let least = of.flat.max(thing.flat) * normal.length();
+        corners.iter().any(|corner| side * normal.dot(*corner - a) > least)
     }
 }
 

@@ -17,7 +17,7 @@ use crate::lights::{Batch, LightTerm};
 use crate::shadow::ball_light::LightSample;
 use crate::shadow::rays::RayScratch;
 use crate::shadow::shaft::POINTS;
-use crate::shadow::tracer::{Sky, Tracer};
+use crate::shadow::tracer::{Sky, SkyAbove, Tracer};
 use crate::simd::Bits;
 
 /// Adds the light of the sky at every position of a batch.
@@ -32,14 +32,18 @@ pub(super) fn add_sky<T: ShadingNumber>(
     let specular = first(&batch.specular);
     T::add_light(stage.variant(), level, batch, term);
     let reached = lit(level, batch, &(before, specular));
+    let mut skies: [Option<SkyAbove>; POINTS] = [None; POINTS];
+    for i in Bits(reached) {
+        let normal = DVec3::from(batch.normal.each_ref().map(|row| row[i].into()));
+        skies[i] = tracer.sky_above(&sky, scratch.origins.point(i), normal);
+    }
     let mut samples: [Option<LightSample>; POINTS] = [None; POINTS];
     let (mut all, mut seen) = ([[0.0; 3]; POINTS], [[0.0; 3]; POINTS]);
     for number in 0..sky.samples {
         for i in Bits(reached) {
-            let normal = DVec3::from(batch.normal.each_ref().map(|row| row[i].into()));
-            samples[i] = tracer.sky_sample(&sky, (scratch.origins.point(i), normal), number);
+            samples[i] = skies[i].map(|sky| sky.sample(number));
         }
-        let blocked = tracer.blocked(level, scratch, &samples, reached);
+        let blocked = tracer.blocked(level, scratch, (&samples, false), reached);
         for i in Bits(reached) {
             let Some(sample) = samples[i] else { continue };
             let color = sky.color(sample.towards);

@@ -11,7 +11,7 @@ use super::interpolated::ShadingNumber;
 use super::shadows::{Firsts, first, lit};
 use crate::frame::draw::Stage;
 use crate::lights::{Batch, LightTerm};
-use crate::shadow::ball_light::LightSample;
+use crate::shadow::ball_light::{LightSample, SeenBall};
 use crate::shadow::rays::RayScratch;
 use crate::shadow::shaft::POINTS;
 use crate::shadow::tracer::{SoftLight, Tracer};
@@ -28,10 +28,17 @@ pub(super) fn add_soft_light<T: ShadingNumber>(
     let dark: Firsts<T> = [[T::default(); POINTS]; 3];
     let (before, own) = ((first(&batch.diffuse), first(&batch.specular)), first(&batch.position));
     let (mut diffuse, mut specular) = (dark, dark);
+    let count = batch.len.min(POINTS);
+    let mut balls: [Option<(SeenBall, u32)>; POINTS] = [None; POINTS];
+    for (i, ball) in balls[..count].iter_mut().enumerate() {
+        *ball = light.seen_from(scratch.origins.point(i));
+    }
+    // Most points see a light as a whole.
+    let is_hidden = tracer.look_between(level, &light, scratch, count);
     let mut samples: [Option<LightSample>; POINTS] = [None; POINTS];
     for number in 0..light.samples {
-        for i in 0..batch.len.min(POINTS) {
-            samples[i] = tracer.light_sample(&light, scratch.origins.point(i), number);
+        for i in 0..count {
+            samples[i] = balls[i].as_ref().map(|ball| SoftLight::sample(ball, number));
             let shift = samples[i].map_or(glam::DVec3::ZERO, |it| tracer.to_view(it.shift));
             for (axis, shift) in shift.to_array().into_iter().enumerate() {
                 let at: f64 = own[axis][i].into();
@@ -43,7 +50,10 @@ pub(super) fn add_soft_light<T: ShadingNumber>(
         }
         T::add_light(stage.variant(), level, batch, term);
         let reached = lit(level, batch, &(dark, dark));
-        let blocked = tracer.blocked(level, scratch, &samples, reached);
+        let blocked = match is_hidden {
+            true => tracer.blocked(level, scratch, (&samples, true), reached),
+            false => 0,
+        };
         for i in Bits(reached & !blocked) {
             for axis in 0..3 {
                 diffuse[axis][i] = diffuse[axis][i] + batch.diffuse[axis][i];

@@ -26,10 +26,24 @@ pub(crate) struct LightSample {
     pub(crate) shift: DVec3,
 }
 
+/// A ball as it is seen from a point.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SeenBall {
+    radius: f64,
+    distance: f64,
+    /// The direction to the centre, and two directions across.
+    axis: DVec3,
+    right: DVec3,
+    up: DVec3,
+    /// 1 - cos of half the aperture of its cone.
+    depth: f64,
+    is_inside: bool,
+}
+
 impl BallLight {
-    /// Returns the direction that two numbers from 0 to 1 choose, seen from a point. `None` at the
-    /// centre, from which no direction is special.
-    pub(super) fn sample(&self, from: DVec3, [u, v]: [f64; 2]) -> Option<LightSample> {
+    /// Returns the ball as it is seen from a point. `None` from the centre, from which no direction
+    /// is special.
+    pub(crate) fn seen_from(&self, from: DVec3) -> Option<SeenBall> {
         let way = self.centre - from;
         let distance = way.length();
         if !(distance > 0.0 && distance.is_finite()) {
@@ -37,28 +51,35 @@ impl BallLight {
         }
         let axis = way / distance;
         let sine = (self.radius / distance).min(1.0);
-        // 1 - cos of the cone's half-aperture, without cancellation. Inside of the ball, light
-        // comes from everywhere.
+        // Without cancellation. Inside of the ball, light comes from everywhere.
         let is_inside = self.radius >= distance;
         let depth = match is_inside {
             true => 2.0,
             false => sine * sine / (1.0 + (1.0 - sine * sine).sqrt()),
         };
+        let (right, up) = axis.any_orthonormal_pair();
+        Some(SeenBall { radius: self.radius, distance, axis, right, up, depth, is_inside })
+    }
+}
+
+impl SeenBall {
+    /// Returns the direction that two numbers from 0 to 1 choose.
+    pub(super) fn sample(&self, [u, v]: [f64; 2]) -> LightSample {
+        let Self { radius, distance, axis, right, up, depth, is_inside } = *self;
         let below = u * depth;
         let cosine = 1.0 - below;
         let across = (below * (2.0 - below)).max(0.0).sqrt();
         let (sin, cos) = libm::sincos(v * std::f64::consts::TAU);
-        let (right, up) = axis.any_orthonormal_pair();
         let towards = axis * cosine + (right * cos + up * sin) * across;
         // The ray meets the ball where the distance from the centre is the radius.
         let beside = distance * across;
-        let chord = (self.radius * self.radius - beside * beside).max(0.0).sqrt();
+        let chord = (radius * radius - beside * beside).max(0.0).sqrt();
         let reach = match is_inside {
             true => distance * cosine + chord,
             false => distance * cosine - chord,
         };
         let shift = (axis * -below + (right * cos + up * sin) * across) * distance;
-        Some(LightSample { towards, distance: reach, shift })
+        LightSample { towards, distance: reach, shift }
     }
 }
 
@@ -75,7 +96,7 @@ mod tests {
         let axis = (ball.centre - from) / 5.0;
         let (mut mean, mut halves) = (0.0, 0);
         for i in 0..4096 {
-            let it = ball.sample(from, sample(i, 7)).unwrap();
+            let it = ball.seen_from(from).unwrap().sample(sample(i, 7));
             assert!((it.towards.length() - 1.0).abs() < 1e-12);
             let end = from + it.towards * it.distance;
             assert!((end.distance(ball.centre) - 2.0).abs() < 1e-9);
@@ -96,12 +117,12 @@ mod tests {
         let ball = BallLight { centre: DVec3::X, radius: 3.0 };
         let mut sum = DVec3::ZERO;
         for i in 0..1024 {
-            let it = ball.sample(DVec3::ZERO, sample(i, 3)).unwrap();
+            let it = ball.seen_from(DVec3::ZERO).unwrap().sample(sample(i, 3));
             sum += it.towards / 1024.0;
             let end = it.towards * it.distance;
             assert!((end.distance(ball.centre) - 3.0).abs() < 1e-9);
         }
         assert!(sum.length() < 0.01, "{sum}");
-        assert!(ball.sample(DVec3::X, [0.5; 2]).is_none());
+        assert!(ball.seen_from(DVec3::X).is_none());
     }
 }

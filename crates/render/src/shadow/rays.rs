@@ -6,7 +6,7 @@ use super::patches::{Patch, find_patches};
 use super::prepared_block::PreparedBlock;
 use super::shaft::{POINTS, Shaft};
 use crate::accel::BvhChild;
-use crate::rays::RayStack;
+use crate::rays::{Frontier, RayStack};
 
 /// The origins of up to [`POINTS`] rays, in world space, all on one object.
 #[derive(Debug)]
@@ -130,6 +130,8 @@ pub(crate) struct RayScratch {
     pub(super) stack: Vec<(BvhChild, u64)>,
     /// The same for single rays.
     pub(super) single: RayStack,
+    /// The parts of the casters' trees between the points and a light.
+    pub(super) frontier: Frontier,
 }
 
 /// The rays of a packet in the space of one caster, for ray-box intersection.

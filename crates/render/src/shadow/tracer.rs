@@ -6,7 +6,7 @@ use crate::accel::Accelerated as _;
 use fearless_simd::{Level, Simd};
 use glam::{DMat3, DMat4, DVec3};
 
-use super::ball_light::{BallLight, LightSample};
+use super::ball_light::{BallLight, LightSample, SeenBall};
 use super::boxes::world_pad;
 use super::known::{KnownLight, KnownShadows};
 use super::map_face::LightMap;
@@ -20,7 +20,7 @@ use super::triangle::{Prepared, is_between, reaches_behind};
 use crate::accel::{BVH_BLOCK, Bvh, BvhBlock, BvhChild, BvhNode};
 use crate::frame::FramePlan;
 use crate::frame::shadows::{Caster, Holes, ShadowSource, Shadows};
-use crate::rays::{Corners, FLAT, Hit, OwnTriangles, Ray, Thing, Things};
+use crate::rays::{Corners, Ends, FLAT, Hit, OwnTriangles, Ray, Thing, Things};
 use crate::simd::{Bits, dispatch};
 use crate::texture::sample::{opacity_of, sample};
 use crate::texture::uv::uv;
@@ -76,6 +76,28 @@ impl Sky {
     }
 }
 
+/// The sky above a point, whose directions are sampled.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SkyAbove {
+    normal: DVec3,
+    right: DVec3,
+    up: DVec3,
+    seed: u32,
+}
+
+impl SkyAbove {
+    /// Returns a direction: the more frequent, the closer it is to the normal, in proportion to the
+    /// cosine.
+    pub(crate) fn sample(&self, number: u32) -> LightSample {
+        let Self { normal, right, up, seed } = *self;
+        let [u, v] = sequence_sample(number, seed);
+        let (sin, cos) = libm::sincos(v * std::f64::consts::TAU);
+        let across = u.sqrt();
+        let towards = normal * (1.0 - u).sqrt() + right * (across * cos) + up * (across * sin);
+        LightSample { towards, distance: f64::INFINITY, shift: DVec3::ZERO }
+    }
+}
+
 /// A light with an extent.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SoftLight {
@@ -84,6 +106,18 @@ pub(crate) struct SoftLight {
     light: u32,
     /// The number of samples at each point.
     pub(crate) samples: u32,
+}
+
+impl SoftLight {
+    /// Returns the light as it is seen from a point, with the seed of its samples there.
+    pub(crate) fn seen_from(&self, point: DVec3) -> Option<(SeenBall, u32)> {
+        Some((self.ball.seen_from(point)?, seed_of(point, self.light)))
+    }
+
+    /// Returns a sample of the light.
+    pub(crate) fn sample(&(ball, seed): &(SeenBall, u32), number: u32) -> LightSample {
+        ball.sample(sequence_sample(number, seed))
+    }
 }
 
 /// A caster with its transforms and bounds.
@@ -209,32 +243,12 @@ impl<'a> Tracer<'a> {
         self.skies.get(light as usize).copied().flatten()
     }
 
-    /// Returns a direction to the sky from a point with a normal in view space: the more frequent,
-    /// the closer it is to the normal, in proportion to the cosine.
-    pub(crate) fn sky_sample(
-        &self,
-        sky: &Sky,
-        (point, normal): (DVec3, DVec3),
-        number: u32,
-    ) -> Option<LightSample> {
+    /// Returns the sky above a point with a normal in view space; `None` without a normal.
+    pub(crate) fn sky_above(&self, sky: &Sky, point: DVec3, normal: DVec3) -> Option<SkyAbove> {
         // The view transform turns and scales evenly.
         let normal = unit(self.view_from_world.transpose() * normal)?;
-        let [u, v] = sequence_sample(number, seed_of(point, sky.light));
-        let (sin, cos) = libm::sincos(v * std::f64::consts::TAU);
         let (right, up) = normal.any_orthonormal_pair();
-        let across = u.sqrt();
-        let towards = normal * (1.0 - u).sqrt() + right * (across * cos) + up * (across * sin);
-        Some(LightSample { towards, distance: f64::INFINITY, shift: DVec3::ZERO })
-    }
-
-    /// Returns a sample of a light at a point.
-    pub(crate) fn light_sample(
-        &self,
-        light: &SoftLight,
-        point: DVec3,
-        number: u32,
-    ) -> Option<LightSample> {
-        light.ball.sample(point, sequence_sample(number, seed_of(point, light.light)))
+        Some(SkyAbove { normal, right, up, seed: seed_of(point, sky.light) })
     }
 
     /// Transforms a vector to view space.
@@ -242,15 +256,33 @@ impl<'a> Tracer<'a> {
         self.view_from_world * vector
     }
 
+    /// Finds what may lie between the first `count` points and a light. Returns whether anything
+    /// does: otherwise, no ray to the light is blocked.
+    pub(crate) fn look_between(
+        &self,
+        level: Level,
+        light: &SoftLight,
+        scratch: &mut RayScratch,
+        count: usize,
+    ) -> bool {
+        let RayScratch { origins, frontier, .. } = scratch;
+        let BallLight { centre, radius } = light.ball;
+        let starts = origins.at.each_ref().map(|row| &row[..count.min(POINTS)]);
+        let ends = Ends { starts, centre, radius };
+        dispatch!(level, simd => frontier.find(simd, &self.things, &ends));
+        !frontier.is_empty()
+    }
+
     /// Traces rays of a mask to their samples of a light. Returns a bit mask of the blocked ones.
+    /// `are_between` says that the last call of [`Self::look_between`] holds for them.
     pub(crate) fn blocked(
         &self,
         level: Level,
         scratch: &mut RayScratch,
-        samples: &[Option<LightSample>; POINTS],
+        (samples, are_between): (&[Option<LightSample>; POINTS], bool),
         mask: u64,
     ) -> u64 {
-        let RayScratch { origins, single, .. } = scratch;
+        let RayScratch { origins, single, frontier, .. } = scratch;
         let stops = |hit: &Hit| {
             let placed = &self.casters[hit.thing as usize];
             self.is_solid_at(placed, hit.triangle, hit.weights)
@@ -265,7 +297,11 @@ impl<'a> Tracer<'a> {
                 is_rounded: origins.in_triangle && origins.lifted >> i & 1 == 0,
             });
             let ray = Ray { from: origins.point(i), towards, own };
-            let is_blocked = self.things.stop(simd, (&ray, distance), &stops, single);
+            let is_blocked = if are_between {
+                self.things.stop_within(simd, (&ray, distance, frontier), &stops, single)
+            } else {
+                self.things.stop(simd, (&ray, distance), &stops, single)
+            };
             blocked |= u64::from(is_blocked) << i;
         });
         let [traced, occluded] = [mask, blocked].map(|rays| u64::from(rays.count_ones()));
