@@ -1,10 +1,13 @@
 //! `marraztu plan`: explains the effects that a frame uses.
 
 use std::fmt::Write as _;
+use std::ops::Range;
 use std::time::Duration;
 
 use clap::{Args, ValueEnum};
 use marraztu_lab::cost::{self, Costs, Explained, Group};
+use marraztu_lab::dial::error_in_words;
+use marraztu_lab::estimate::Estimate;
 use marraztu_lab::report::quoted;
 use marraztu_render::EffectUse;
 use serde::Serialize;
@@ -19,7 +22,8 @@ use super::talk::{self, print};
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Takes the files and options of `render`. Lists each effect of the renderer as on or left out, with
-the reason. Effects that are on are counted in pixels and, with --measure, in milliseconds.
+the reason. Effects that are on are counted in pixels and, with --measure, in milliseconds. Then
+follows what each is worth: the error without it, and whether anybody would see that.
 For surfaces, the reason is how pixels are coloured: one colour for each triangle, corners
 (interpolated), blocks (lit at once), or lists of pixels, which may be joined, or tiny triangles.
 
@@ -94,7 +98,7 @@ fn table(explained: &Explained, costs: Option<&Costs>) -> String {
             rows.push(row("", &format!("  {of}"), &Group { uses, ..group }, String::new()));
         }
     }
-    let mut text = columns(&rows);
+    let mut text = columns(&rows, 4..6);
     let size = explained.size;
     // Writing to a string cannot fail.
     let _ = writeln!(
@@ -105,8 +109,30 @@ fn table(explained: &Explained, costs: Option<&Costs>) -> String {
     if let Some(costs) = costs {
         let (frame, noise) = (costs.frame, costs.noise);
         let _ = writeln!(text, "A frame takes {frame:.3} ms; less than {noise:.3} ms is noise.");
+        text += &worth(explained, costs);
     }
     text
+}
+
+/// Lists what is lost without each effect, in the order of the error that a millisecond saves.
+fn worth(explained: &Explained, costs: &Costs) -> String {
+    let all = costs.by_worth();
+    if all.is_empty() {
+        return String::new();
+    }
+    let head = ["Without", "ms less", "error of 255", ""].map(str::to_owned);
+    let rows = all.iter().map(|cost| {
+        let name = explained.groups().find(|group| group.effect == cost.effect);
+        let time = match costs.is_clear(cost) {
+            true => format!("{:.3}", cost.milliseconds),
+            false => "noise".to_owned(),
+        };
+        let seen = if cost.missed.is_seen() { "" } else { "no one sees that" };
+        let error = error_in_words(&Estimate::exact(cost.missed.rmse)).unwrap_or_default();
+        [name.map_or_else(String::new, |it| it.uses[0].name.clone()), time, error, seen.to_owned()]
+    });
+    let rows: Vec<[String; 4]> = std::iter::once(head).chain(rows).collect();
+    format!("\n{}", columns(&rows, 1..3))
 }
 
 fn row(name: &str, of: &str, group: &Group<'_>, time: String) -> [String; 6] {
@@ -116,18 +142,17 @@ fn row(name: &str, of: &str, group: &Group<'_>, time: String) -> [String; 6] {
     [name.to_owned(), of.to_owned(), state.to_owned(), why, pixels, time]
 }
 
-/// Aligns the columns of rows, the last two to the right.
-fn columns(rows: &[[String; 6]]) -> String {
+/// Aligns the columns of rows, columns of numbers to the right.
+fn columns<const N: usize>(rows: &[[String; N]], numbers: Range<usize>) -> String {
     let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max();
-    let widths: [usize; 6] = std::array::from_fn(|column| width(column).unwrap_or(0));
+    let widths: [usize; N] = std::array::from_fn(|column| width(column).unwrap_or(0));
     let mut text = String::new();
     for row in rows {
         let mut line = String::new();
         for (i, (cell, width)) in row.iter().zip(widths).enumerate() {
-            let _ = if i < 4 {
-                write!(line, "{cell:width$}  ")
-            } else {
-                write!(line, "{cell:>width$}  ")
+            let _ = match numbers.contains(&i) {
+                true => write!(line, "{cell:>width$}  "),
+                false => write!(line, "{cell:width$}  "),
             };
         }
         let _ = writeln!(text, "{}", line.trim_end());
@@ -146,6 +171,8 @@ struct Row<'a> {
     pixels: Option<u64>,
     milliseconds: Option<f64>,
     spread: Option<f64>,
+    rmse_without: Option<f64>,
+    flip_without: Option<f64>,
 }
 
 impl<'a> Row<'a> {
@@ -160,21 +187,23 @@ impl<'a> Row<'a> {
             pixels: one.pixels,
             milliseconds: cost.map(|cost| cost.milliseconds),
             spread: cost.map(|cost| cost.spread),
+            rmse_without: cost.map(|cost| cost.missed.rmse),
+            flip_without: cost.map(|cost| cost.missed.flip),
         }
     }
 }
 
 fn csv(explained: &Explained, costs: Option<&Costs>) -> String {
-    let mut text = "effect,name,on,state,why,pixels,milliseconds,spread\n".to_owned();
+    let head = "effect,name,on,state,why,pixels,milliseconds,spread,rmse_without,flip_without\n";
+    let mut text = head.to_owned();
     for one in &explained.uses {
-        let Row { effect, name, on, state, why, pixels, milliseconds, spread } =
-            Row::new(one, costs);
-        let words = [effect, name, on, state, why].map(quoted);
-        let numbers = [pixels.map(|x| x.to_string()), milliseconds.map(|x| x.to_string())];
-        let [pixels, milliseconds] = numbers.map(Option::unwrap_or_default);
-        let spread = spread.map_or_else(String::new, |x| x.to_string());
+        let row = Row::new(one, costs);
+        let words = [row.effect, row.name, row.on, row.state, row.why].map(quoted);
+        let measured = [row.milliseconds, row.spread, row.rmse_without, row.flip_without];
+        let measured = measured.map(|x| x.map_or_else(String::new, |x| x.to_string()));
+        let pixels = row.pixels.map_or_else(String::new, |x| x.to_string());
         // Writing to a string cannot fail.
-        let _ = writeln!(text, "{},{pixels},{milliseconds},{spread}", words.join(","));
+        let _ = writeln!(text, "{},{pixels},{}", words.join(","), measured.join(","));
     }
     text
 }

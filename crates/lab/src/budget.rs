@@ -25,14 +25,7 @@ use marraztu_core::accuracy::{Resolution, Shot};
 pub use self::meter::Measured;
 use self::meter::Meter;
 use self::model::{Step, predictions};
-
-/// The largest per-pixel FLIP of two pictures that look the same.
-///
-/// It is the FLIP of two large grey areas whose lightness differs by 2.3, the just noticeable
-/// difference of CIELAB: Mahy, Van Eycken and Oosterlinck, "Evaluation of Uniform Color Spaces
-/// Developed after the Adoption of CIELAB and CIELUV", Color Research and Application 19(2), 1994.
-/// FLIP raises it to the power 0.7 and divides it: (2.3^0.7) 0.95 / (0.4 41.3) = 0.10.
-pub const VISIBLE: f64 = 0.1;
+pub use crate::flip::VISIBLE;
 
 /// The time after which no other settings are tried, and the one if fewer pictures were drawn.
 const SEARCHING: Duration = Duration::from_secs(1);

@@ -1,4 +1,5 @@
-//! Explains the effects of a frame, and measures the cost of each in pixels and milliseconds.
+//! Explains the effects of a frame, and measures the cost of each in pixels and milliseconds, and
+//! how far the picture without it is from the one with it.
 //!
 //! A time is measured by alternating frames with and without the effect. The result is the median
 //! of the differences; its spread is half the interquartile range. Pairs of equal frames, measured
@@ -9,6 +10,8 @@ use std::time::{Duration, Instant};
 
 use serde::{Deserialize, Serialize};
 
+use super::dial::rmse;
+use super::flip::{Perceived, VISIBLE};
 use super::statistics::Quartiles;
 use super::timing::time;
 use marraztu_core::accuracy::Shot;
@@ -17,8 +20,9 @@ use marraztu_render::explain_frame;
 use marraztu_render::plan_frame;
 use marraztu_render::{Effect, EffectUse, FramePlan, Renderer};
 
-/// The fewest pairs per effect.
+/// The fewest pairs per effect, and the fewest if frames take long.
 const PAIRS: usize = 7;
+const SLOW_PAIRS: usize = 2;
 
 /// The most pairs per effect.
 const MOST_PAIRS: usize = 31;
@@ -87,6 +91,24 @@ pub struct Cost {
     pub milliseconds: f64,
     /// Half the interquartile range of the milliseconds.
     pub spread: f64,
+    /// What is missing without the effect.
+    pub missed: Missed,
+}
+
+/// How far a picture without an effect is from the one with it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Missed {
+    /// The root mean square difference in byte steps.
+    pub rmse: f64,
+    /// The largest FLIP of a pixel, from 0 to 1.
+    pub flip: f64,
+}
+
+impl Missed {
+    /// Returns whether a pixel differs visibly: see [`VISIBLE`].
+    pub fn is_seen(&self) -> bool {
+        self.flip > VISIBLE
+    }
 }
 
 /// The measurements of a frame.
@@ -109,6 +131,21 @@ impl Costs {
     /// Returns whether a cost exceeds the noise.
     pub fn is_clear(&self, cost: &Cost) -> bool {
         cost.milliseconds.abs() > self.noise + cost.spread
+    }
+
+    /// Returns the effects in the order of the error that a millisecond of them saves, the most
+    /// worthwhile first. Times below the noise count as noise.
+    pub fn by_worth(&self) -> Vec<&Cost> {
+        let worth = |cost: &Cost| {
+            let ms = cost.milliseconds.max(self.noise).max(f64::MIN_POSITIVE);
+            (cost.missed.is_seen(), cost.missed.rmse / ms)
+        };
+        let mut all: Vec<&Cost> = self.effects.iter().collect();
+        all.sort_by(|a, b| {
+            let ((seen, worth), (other_seen, other)) = (worth(a), worth(b));
+            other_seen.cmp(&seen).then(other.total_cmp(&worth))
+        });
+        all
     }
 }
 
@@ -143,6 +180,8 @@ pub fn measure(shot: &Shot, budget: Duration, stopped: impl Fn() -> bool) -> Cos
     for _ in 0..3 {
         bench.time(&plan);
     }
+    let picture = bench.renderer.render(&plan).clone();
+    let perceived = Perceived::new(&picture);
     let control = bench.pairs(&plan, &plan, share, &stopped);
     let mut costs =
         Costs { frame: control.frame, noise: noise(&control.difference), effects: Vec::new() };
@@ -152,7 +191,12 @@ pub fn measure(shot: &Shot, budget: Duration, stopped: impl Fn() -> bool) -> Cos
         }
         let difference = bench.pairs(&plan, without, share, &stopped).difference;
         let (milliseconds, spread) = (difference.median, difference.spread());
-        costs.effects.push(Cost { effect: *effect, milliseconds, spread });
+        let other = bench.renderer.render(without);
+        let rmse = rmse(&picture, other);
+        // The same bytes need no filters.
+        let flip = if rmse > 0.0 { perceived.largest_of_all(&Perceived::new(other)) } else { 0.0 };
+        let missed = Missed { rmse, flip };
+        costs.effects.push(Cost { effect: *effect, milliseconds, spread, missed });
     }
     costs
 }
@@ -188,10 +232,11 @@ impl Bench {
         let (mut frames, mut differences) = (Vec::new(), Vec::new());
         // The first frame allocates memory, so it is not counted.
         self.time(without);
-        while differences.len() < MOST_PAIRS
-            && (differences.len() < PAIRS || begun.elapsed() < share)
-            && !stopped()
-        {
+        let goes_on = |pairs: usize| {
+            let spent = begun.elapsed();
+            spent < share || pairs < SLOW_PAIRS || (pairs < PAIRS && spent < share * 3)
+        };
+        while differences.len() < MOST_PAIRS && goes_on(differences.len()) && !stopped() {
             // Alternate the order within pairs, so that neither plan always comes first.
             let (a, b) = if differences.len().is_multiple_of(2) {
                 let a = self.time(with);
@@ -219,6 +264,7 @@ fn noise(differences: &Quartiles) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use marraztu_core::accuracy::Settings;
 
     /// Differences with the median -1 and the quartiles -3 and 3.
     const DIFFERENCES: [f64; 9] = [4.0, -7.0, -3.0, 3.0, -1.0, 2.0, -2.0, 5.0, -4.0];
@@ -233,12 +279,50 @@ mod tests {
     #[test]
     fn a_cost_within_the_noise_and_its_own_spread_is_not_clear() {
         let costs = Costs { frame: 9.0, noise: 4.0, effects: Vec::new() };
-        let cost = |milliseconds| Cost { effect: Effect::Texture, milliseconds, spread: 3.0 };
+        let missed = Missed { rmse: 1.0, flip: 0.5 };
+        let cost =
+            |milliseconds| Cost { effect: Effect::Texture, milliseconds, spread: 3.0, missed };
         for within in [0.0, 6.5, 7.0, -7.0] {
             assert!(!costs.is_clear(&cost(within)), "{within}");
         }
         for beyond in [7.1, -7.1] {
             assert!(costs.is_clear(&cost(beyond)), "{beyond}");
         }
+    }
+
+    #[test]
+    fn effects_are_ranked_by_the_error_that_a_millisecond_saves_and_unseen_ones_come_last() {
+        let cost = |effect, milliseconds, rmse, flip| Cost {
+            effect,
+            milliseconds,
+            spread: 0.1,
+            missed: Missed { rmse, flip },
+        };
+        let effects = vec![
+            cost(Effect::Bumps, 2.0, 50.0, 0.05),
+            cost(Effect::Texture, 4.0, 8.0, 0.5),
+            cost(Effect::Highlights, 1.0, 8.0, 0.5),
+            // Its time is noise: it counts as 0.5.
+            cost(Effect::Mirrors, 0.01, 1.0, 0.2),
+        ];
+        let costs = Costs { frame: 9.0, noise: 0.5, effects };
+        let order: Vec<Effect> = costs.by_worth().iter().map(|cost| cost.effect).collect();
+        assert_eq!(order, [Effect::Highlights, Effect::Texture, Effect::Mirrors, Effect::Bumps]);
+    }
+
+    /// The errors are those of pictures that are drawn without the effect.
+    #[test]
+    fn what_is_missed_is_the_difference_of_two_pictures() {
+        let (scene, view) = marraztu_io::default_scene();
+        let shot = Shot::new(&scene, &view, &Settings::default(), Size::new(80, 60));
+        let costs = measure(&shot, Duration::ZERO, || false);
+        let (plan, mut renderer) = (plan_frame(&shot), Renderer::default());
+        let with = renderer.render(&plan).clone();
+        for cost in &costs.effects {
+            let without = renderer.render(&plan.without(cost.effect).unwrap()).clone();
+            assert_eq!(cost.missed.rmse, rmse(&with, &without), "{:?}", cost.effect);
+            assert_eq!(cost.missed.flip > 0.0, with != without, "{:?}", cost.effect);
+        }
+        assert!(costs.of(Effect::Surfaces).unwrap().missed.is_seen());
     }
 }

@@ -356,6 +356,12 @@ fn squares(a: &Picture, b: &Picture, window: &PixelBox) -> f64 {
     pixels_of(a, window).zip(pixels_of(b, window)).map(|(a, b)| squared(a, b)).sum()
 }
 
+/// Returns the root mean square difference of two pictures of one size, in byte steps.
+pub(crate) fn rmse(a: &Picture, b: &Picture) -> f64 {
+    let squares: f64 = a.pixels().iter().zip(b.pixels()).map(|(a, b)| squared(a, b)).sum();
+    libm::sqrt(squares / (3 * a.pixels().len().max(1)) as f64)
+}
+
 /// Returns the same sum, for a picture `exact` of the window alone.
 pub(crate) fn squares_within(picture: &Picture, exact: &Picture, window: &PixelBox) -> f64 {
     pixels_of(picture, window).zip(exact.pixels()).map(|(a, b)| squared(a, b)).sum()

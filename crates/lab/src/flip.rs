@@ -37,6 +37,14 @@ const RGB_FROM_XYZ: [[f64; 3]; 3] = [
     [0.055_639_423, -0.204_011_202, 1.057_148_933],
 ];
 
+/// The largest per-pixel FLIP of two pictures that look the same.
+///
+/// It is the FLIP of two large grey areas whose lightness differs by 2.3, the just noticeable
+/// difference of CIELAB: Mahy, Van Eycken and Oosterlinck, "Evaluation of Uniform Color Spaces
+/// Developed after the Adoption of CIELAB and CIELUV", Color Research and Application 19(2), 1994.
+/// FLIP raises it to the power 0.7 and divides it: (2.3^0.7) 0.95 / (0.4 41.3) = 0.10.
+pub const VISIBLE: f64 = 0.1;
+
 /// The part of the metric that depends on one picture only.
 #[derive(Debug)]
 pub struct Perceived {
@@ -81,8 +89,16 @@ impl Perceived {
         let (width, most) = (self.size.width, most_color_error());
         let [left, top, right, bottom] = [window.left, window.top, window.right, window.bottom]
             .map(|side| usize::try_from(side).unwrap_or(0));
-        let pixels = (top..bottom).flat_map(|y| y * width + left..y * width + right);
-        pixels.map(|i| self.at(other, i, most)).fold(0.0, f64::max)
+        let row = |y| y * width + left..y * width + right;
+        let of_row = |y| row(y).map(|i| self.at(other, i, most)).fold(0.0, f64::max);
+        (top..bottom).into_par_iter().map(of_row).reduce(|| 0.0, f64::max)
+    }
+
+    /// Returns the largest difference of any pixel, from 0 to 1.
+    pub(crate) fn largest_of_all(&self, other: &Self) -> f64 {
+        let [right, bottom] =
+            [self.size.width, self.size.height].map(|side| i32::try_from(side).unwrap_or(i32::MAX));
+        self.largest(other, &PixelBox { left: 0, top: 0, right, bottom })
     }
 
     /// Returns the sum of the differences in each of some rows, at the pixels that count. Summation

@@ -1,7 +1,9 @@
 //! The plan panel: each effect of the picture, whether it is on, why, and its cost.
 //!
 //! Each effect has a line, with lines for its items below it if they differ. Effects that are on
-//! have a full disk and strong text. Costs are numbers with bars, so the largest is easy to see.
+//! have a full disk and strong text; the disk of a light or of its shadows is a switch. Costs are
+//! numbers with bars, so the largest is easy to see. Beside each time stands what the picture loses
+//! without the effect, and what no one would miss can be switched off together.
 
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -10,14 +12,18 @@ use egui::{
     Align2, Color32, Id, Rect, RichText, ScrollArea, Sense, TextStyle, Ui, WidgetInfo, pos2, vec2,
 };
 
-use crate::app::actions::{Action, Requests};
+use crate::app::actions::{Action, Request, Requests};
 use crate::app::state::{Measured, State};
 use crate::app::theme;
 use crate::app::widgets::controls;
 use crate::app::widgets::icons::Icon;
 use crate::app::widgets::regions;
 use crate::app::widgets::text::grouped;
-use marraztu_lab::cost::{Explained, Group};
+use marraztu_core::edit::{Change, Gesture, items, lights};
+use marraztu_core::scene::{Command, ItemId, Scene};
+use marraztu_lab::cost::{Cost, Explained, Group};
+use marraztu_lab::dial::error_in_words;
+use marraztu_lab::estimate::Estimate;
 use marraztu_render::{Effect, EffectUse};
 
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
@@ -26,7 +32,7 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
         return;
     };
     header_ui(ui, state, requests, &explained);
-    controls::no_narrower(ui, LEAST, |ui| table_ui(ui, state, &explained));
+    controls::no_narrower(ui, LEAST, |ui| table_ui(ui, state, requests, &explained));
 }
 
 /// The width of the Measure button.
@@ -60,7 +66,11 @@ fn header_ui(ui: &mut Ui, state: &State, requests: &mut Requests, explained: &Ex
             if state.plan.measuring {
                 ui.add(egui::Spinner::new().size(14.0));
             } else if let Some(measured) = &state.plan.costs {
-                times_ui(ui, measured, is_of_now(measured, state));
+                let is_of_now = is_of_now(measured, state);
+                if is_of_now {
+                    drop_ui(ui, (state, requests), (explained, measured));
+                }
+                times_ui(ui, measured, is_of_now);
             }
         });
     });
@@ -80,6 +90,44 @@ fn times_ui(ui: &mut Ui, measured: &Measured, now: bool) {
     );
 }
 
+/// Shows the button that switches off what no one would miss.
+fn drop_ui(
+    ui: &mut Ui,
+    (state, requests): (&State, &mut Requests),
+    (explained, measured): (&Explained, &Measured),
+) {
+    let unseen = measured.costs.effects.iter().filter(|cost| !cost.missed.is_seen());
+    let unseen: Vec<Effect> = unseen.map(|cost| cost.effect).collect();
+    // A light that is off casts no shadows.
+    let is_off = |effect: Effect| match effect {
+        Effect::Shadows(id) => unseen.contains(&Effect::Light(id)),
+        _ => false,
+    };
+    let unseen = unseen.iter().filter(|effect| !is_off(**effect)).filter_map(|effect| {
+        let group = explained.groups().find(|group| group.effect == *effect)?;
+        Some((group.uses[0].name.clone(), switched(&state.scene, *effect)?.ok()?))
+    });
+    let (names, commands): (Vec<String>, Vec<Command>) = unseen.unzip();
+    if names.is_empty() {
+        return;
+    }
+    let button = ui.button(format!("Drop unseen ({})", names.len()));
+    let hint = format!("Switches off what no one would see missing here: {}.", names.join(", "));
+    if button.on_hover_text(hint).clicked() {
+        let all = Ok(Command::Batch(commands));
+        requests.push(Request::change("Drop what no one sees", Gesture::Whole, all));
+    }
+}
+
+/// Returns the change that switches an effect on or off; `None` if it has no switch of its own.
+fn switched(scene: &Scene, effect: Effect) -> Option<Change> {
+    match effect {
+        Effect::Light(id) => Some(items::toggle_shown(scene, ItemId::Light(id))),
+        Effect::Shadows(id) => Some(lights::toggle_shadows(scene, id)),
+        _ => None,
+    }
+}
+
 fn summary(explained: &Explained) -> String {
     let on = explained.uses.iter().filter(|one| one.state.is_on()).count();
     let left_out = explained.uses.len() - on;
@@ -96,45 +144,57 @@ struct Columns {
     name: Rect,
     on: Rect,
     why: Rect,
-    pixels: Rect,
+    /// Measured, a narrow panel has no room for it.
+    pixels: Option<Rect>,
     time: Rect,
+    /// What the picture loses without the effect, if it is measured.
+    missed: Option<Rect>,
 }
 
 impl Columns {
-    fn of(row: Rect) -> Self {
+    fn of(row: Rect, is_measured: bool) -> Self {
         let is_roomy = row.width() >= ROOMY;
         let number = if is_roomy { 92.0 } else { 68.0 };
         let shares = if is_roomy { [0.34, 0.26] } else { [0.37, 0.35] };
         let right = row.right() - 4.0;
-        let text = (right - 2.0 * number - row.left()).max(120.0);
+        let shows_pixels = is_roomy || !is_measured;
+        let numbers = 1.0 + f32::from(shows_pixels) + f32::from(is_measured);
+        let text = (right - numbers * number - row.left()).max(120.0);
         let [name, on] = shares.map(|share| (text * share).min(220.0));
         let column = |left: f32, width: f32| {
             Rect::from_min_max(pos2(left, row.top()), pos2(left + width - 8.0, row.bottom()))
         };
         let left = row.left();
+        // The last column ends with the row.
+        let last = |is_last: bool| if is_last { number + 8.0 } else { number };
         Self {
             name: column(left, name),
             on: column(left + name, on),
             why: column(left + name + on, text - name - on),
-            pixels: column(right - 2.0 * number, number),
-            time: column(right - number, number + 8.0),
+            pixels: shows_pixels.then(|| column(right - numbers * number, number)),
+            time: column(right - (1.0 + f32::from(is_measured)) * number, last(!is_measured)),
+            missed: is_measured.then(|| column(right - number, last(true))),
         }
     }
 }
 
-fn table_ui(ui: &mut Ui, state: &State, explained: &Explained) {
+fn table_ui(ui: &mut Ui, state: &State, requests: &mut Requests, explained: &Explained) {
+    let times = state.plan.costs.as_ref().filter(|measured| is_of_now(measured, state));
     let (head, _) = ui.allocate_exact_size(vec2(ui.available_width(), 16.0), Sense::hover());
-    let columns = Columns::of(head.with_max_x(head.right() - f32::from(theme::MARGIN)));
+    let own = head.with_max_x(head.right() - f32::from(theme::MARGIN));
+    let columns = Columns::of(own, times.is_some());
     // Headings of text columns are left-aligned, of numbers right-aligned.
     let titles = [
-        (columns.name, "Effect"),
-        (columns.on, "Item"),
-        (columns.why, "Reason"),
+        (Some(columns.name), "Effect"),
+        (Some(columns.on), "Item"),
+        (Some(columns.why), "Reason"),
         (columns.pixels, "Pixels"),
-        (columns.time, if columns.time.width() < 80.0 { "ms" } else { "Milliseconds" }),
+        (Some(columns.time), if columns.time.width() < 80.0 { "ms" } else { "Milliseconds" }),
+        (columns.missed, "Missed"),
     ];
     let weak = ui.visuals().weak_text_color();
     for (i, (rect, title)) in titles.into_iter().enumerate() {
+        let Some(rect) = rect else { continue };
         let title = controls::text(ui, title, TextStyle::Small, rect.width());
         let left = if i < 3 { rect.left() } else { rect.right() - title.size().x };
         controls::put_text(ui, rect.with_min_x(left), title, weak);
@@ -146,13 +206,12 @@ fn table_ui(ui: &mut Ui, state: &State, explained: &Explained) {
     let mut open: BTreeSet<Effect> = ui.data(|data| data.get_temp(id)).unwrap_or_default();
     // The bars of all groups have one scale.
     let most = explained.groups().filter_map(|group| group.pixels()).max().unwrap_or(0);
-    let times = state.plan.costs.as_ref().filter(|measured| is_of_now(measured, state));
     let area = ScrollArea::vertical().id_salt("plan").auto_shrink(false);
     area.content_margin(theme::SCROLL_MARGIN).show(ui, |ui| {
         ui.spacing_mut().item_spacing.y = 0.0;
         for group in explained.groups() {
             let is_open = open.contains(&group.effect);
-            if group_ui(ui, most, times, &group, is_open) {
+            if group_ui(ui, (state, requests), (most, times), &group, is_open) {
                 if is_open {
                     open.remove(&group.effect);
                 } else {
@@ -161,7 +220,7 @@ fn table_ui(ui: &mut Ui, state: &State, explained: &Explained) {
             }
             if is_open && !group.is_alike() {
                 for one in group.uses {
-                    use_ui(ui, most, one);
+                    use_ui(ui, (most, times.is_some()), one);
                 }
             }
         }
@@ -173,8 +232,8 @@ fn table_ui(ui: &mut Ui, state: &State, explained: &Explained) {
 /// Shows the line of an effect. Returns whether it was clicked.
 fn group_ui(
     ui: &mut Ui,
-    most: u64,
-    times: Option<&Arc<Measured>>,
+    (state, requests): (&State, &mut Requests),
+    (most, times): (u64, Option<&Arc<Measured>>),
     group: &Group<'_>,
     is_open: bool,
 ) -> bool {
@@ -191,12 +250,22 @@ fn group_ui(
         why: &why,
         pixels: group.pixels(),
         most,
+        is_measured: times.is_some(),
     };
     let (rect, response) = row.ui(ui);
+    if let Some(Ok(command)) = switched(&state.scene, group.effect)
+        && row.switch_ui(ui, rect, group.effect)
+    {
+        let label = format!("Switch {} {}", first.name, if row.on { "off" } else { "on" });
+        requests.push(Request::change(label, Gesture::Whole, Ok(command)));
+    }
     if let Some((measured, cost)) =
         times.and_then(|measured| Some((measured, measured.costs.of(group.effect)?)))
     {
-        let column = Columns::of(rect).time;
+        let Columns { time: column, missed, .. } = Columns::of(rect, true);
+        if let Some(column) = missed {
+            missed_ui(ui, column, cost);
+        }
         if measured.costs.is_clear(cost) {
             let part = cost.milliseconds / measured.costs.frame;
             number_ui(ui, column, &format!("{:.2}", cost.milliseconds), part, true);
@@ -207,7 +276,24 @@ fn group_ui(
     folds && response.clicked()
 }
 
-fn use_ui(ui: &mut Ui, most: u64, one: &EffectUse) {
+/// Shows what the picture loses without an effect.
+fn missed_ui(ui: &Ui, column: Rect, cost: &Cost) {
+    let error = error_in_words(&Estimate::exact(cost.missed.rmse)).unwrap_or_default();
+    if cost.missed.is_seen() {
+        number_ui(ui, column, &error, cost.missed.rmse / 255.0, true);
+    } else {
+        number_ui(ui, column, "unseen", 0.0, false);
+    }
+    let hint = format!(
+        "Without it, the picture differs by {error} of 255 on average (RMSE), and by {:.2} of \
+         1 in a pixel as seen by the eye (FLIP); less than 0.1 is not seen.",
+        cost.missed.flip
+    );
+    let id = ui.scope_id().with(("missed", cost.effect.label(), column.top().to_bits()));
+    ui.interact(column, id, Sense::hover()).on_hover_text(hint);
+}
+
+fn use_ui(ui: &mut Ui, (most, is_measured): (u64, bool), one: &EffectUse) {
     let row = Row {
         name: "",
         indent: 16.0,
@@ -217,9 +303,13 @@ fn use_ui(ui: &mut Ui, most: u64, one: &EffectUse) {
         why: &one.state.to_string(),
         pixels: one.pixels,
         most,
+        is_measured,
     };
     row.ui(ui);
 }
+
+/// The distance of a disk from the left end of its line.
+const MARK: f32 = 12.0;
 
 /// A line of the table.
 struct Row<'a> {
@@ -233,6 +323,8 @@ struct Row<'a> {
     pixels: Option<u64>,
     /// The largest number of pixels in the table.
     most: u64,
+    /// Whether the table has times.
+    is_measured: bool,
 }
 
 impl Row<'_> {
@@ -250,9 +342,9 @@ impl Row<'_> {
         }
         let visuals = ui.visuals();
         let color = if self.on { visuals.text_color() } else { visuals.weak_text_color() };
-        let columns = Columns::of(rect);
+        let columns = Columns::of(rect, self.is_measured);
         let middle = rect.center().y;
-        let mark = columns.name.left() + 12.0;
+        let mark = columns.name.left() + MARK;
         if let Some(is_open) = self.chevron {
             let icon = if is_open { Icon::DOWN } else { Icon::RIGHT };
             let at =
@@ -270,15 +362,30 @@ impl Row<'_> {
         put(columns.name, mark + 16.0, self.name, color);
         put(columns.on, columns.on.left() + self.indent, self.things, color);
         put(columns.why, columns.why.left(), self.why, ui.visuals().weak_text_color());
-        if let Some(pixels) = self.pixels.filter(|_| self.on) {
+        if let Some((pixels, column)) = self.pixels.filter(|_| self.on).zip(columns.pixels) {
             #[expect(clippy::cast_precision_loss, reason = "for the eye")]
             let part = pixels as f64 / self.most.max(1) as f64;
             let text = grouped(usize::try_from(pixels).unwrap_or(usize::MAX));
-            number_ui(ui, columns.pixels, &text, part, true);
+            number_ui(ui, column, &text, part, true);
         }
         controls::focus_ring(ui, rect, &response);
         let tip = if self.why.is_empty() { self.things } else { self.why };
         (rect, response.on_hover_text_at_pointer(tip))
+    }
+
+    /// Makes the disk of the line a switch. Returns whether it was clicked.
+    fn switch_ui(&self, ui: &Ui, line: Rect, effect: Effect) -> bool {
+        let at = pos2(line.left() + MARK + 6.0, line.center().y);
+        let square = Rect::from_center_size(at, vec2(18.0, line.height()));
+        let response = ui.interact(square, Id::unique(("switch", effect)), Sense::click());
+        let name = format!("Switch {}", self.name);
+        response.widget_info(|| WidgetInfo::selected(egui::Role::CheckBox, true, self.on, &name));
+        if response.hovered() || response.has_focus() {
+            let line = egui::Stroke::new(1.0, ui.visuals().text_color());
+            ui.painter().circle_stroke(at, 6.5, line);
+        }
+        let hint = format!("Switch {} {}", self.name, if self.on { "off" } else { "on" });
+        response.on_hover_text(hint).clicked()
     }
 
     fn spoken(&self) -> String {
