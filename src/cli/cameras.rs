@@ -4,8 +4,8 @@
 //! fields have the matrices with the axes of OpenGL and of OpenCV. A run replaces the entries of
 //! its pictures and keeps the others, except in data sets. Entries are never all in memory.
 
-use std::collections::BTreeMap;
 use std::collections::btree_map::Entry::Vacant;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::File;
 use std::io::BufReader;
 use std::ops::Range;
@@ -22,6 +22,8 @@ use serde_json::{Map, Value, json};
 use super::failure::Failure;
 use super::layers::{LayerFile, LayerOptions, OutputLayer};
 use super::page::parts_between;
+use super::split::{self, Split};
+use super::talk::note;
 
 /// The usual name of the file.
 pub(crate) const CAMERAS: &str = "cameras.json";
@@ -163,6 +165,7 @@ struct FolderCameras {
 pub(crate) struct Cameras {
     name: String,
     earlier: Earlier,
+    split: Option<Split>,
     folders: BTreeMap<PathBuf, FolderCameras>,
     spool: Option<Spool>,
 }
@@ -175,9 +178,10 @@ pub(crate) enum Earlier {
 }
 
 impl Cameras {
-    /// Begins to collect cameras for files of this name, in the folders of the pictures.
-    pub(crate) fn new(name: String, earlier: Earlier) -> Self {
-        Self { name, earlier, folders: BTreeMap::new(), spool: None }
+    /// Begins to collect cameras for files of this name, in the folders of the pictures, and for
+    /// the parts of a data set.
+    pub(crate) fn new(name: String, earlier: Earlier, split: Option<Split>) -> Self {
+        Self { name, earlier, split, folders: BTreeMap::new(), spool: None }
     }
 
     /// Adds the camera of a picture. Fails if it cannot be written.
@@ -218,12 +222,56 @@ impl Cameras {
             }
             file.push(b"\n]}\n")?;
             file.finish()?;
+            if let Some(split) = self.split {
+                cameras.write_parts(&folder, spool, split)?;
+            }
         }
         Ok(())
     }
 }
 
+/// Returns the name of the file of a part of a data set.
+pub(crate) fn part_name(part: &str) -> String {
+    format!("transforms_{part}.json")
+}
+
 impl FolderCameras {
+    /// Writes the files of the parts of a data set.
+    fn write_parts(&self, folder: &Path, spool: &mut Spool, split: Split) -> Result<(), Failure> {
+        let mut angles = BTreeSet::new();
+        let head = format!("{{\"marraztu\": {}", json!(env!("CARGO_PKG_VERSION")));
+        for part in split.parts() {
+            let path = folder.join(part_name(part));
+            let mut file = NewFile::begin(&path)?;
+            let mut begin = String::new();
+            let own = self.entries.values().zip(split.of_pictures()).filter(|(_, it)| *it == part);
+            for (place, _) in own {
+                let full: Map<String, Value> =
+                    serde_json::from_slice(&spool.get(place)?).unwrap_or_default();
+                let angle = full.get("camera_angle_x").map(Value::to_string).unwrap_or_default();
+                if begin.is_empty() {
+                    begin = format!("{head}, \"camera_angle_x\": {angle},\n\"frames\": [\n");
+                }
+                angles.insert(angle);
+                file.push(format!("{begin}{}", split::entry(&full)).as_bytes())?;
+                ",\n".clone_into(&mut begin);
+            }
+            if begin.is_empty() {
+                file.push(format!("{head}, \"frames\": [").as_bytes())?;
+            }
+            file.push(b"\n]}\n")?;
+            file.finish()?;
+        }
+        if angles.len() > 1 {
+            note(&format_args!(
+                "{}: the pictures have different angles of view, and a file of a part has one: use \
+                 transforms.json",
+                folder.display()
+            ));
+        }
+        Ok(())
+    }
+
     /// Adds the entries of an earlier run, if there is one, for other pictures and scenes.
     fn add_earlier(&mut self, path: &Path, spool: &mut Spool) -> Result<(), Failure> {
         let mut failed = None;
@@ -259,8 +307,8 @@ fn pushed(spool: &mut Spool, value: &Value) -> Result<Range<u64>, SaveError> {
     spool.push(value.to_string().as_bytes())
 }
 
-/// Checks, before anything is drawn, that the file at `path` is missing or one of an earlier run.
-/// Fails if it has other content.
+/// Checks, before anything is drawn, that the file at `path` is missing or one of an earlier run,
+/// also of a part of a data set. Fails if it has other content.
 pub(crate) fn check_cameras(path: &Path) -> Result<(), Failure> {
     read(path, &mut |_piece| {})
 }
@@ -301,14 +349,14 @@ impl<'de> Visitor<'de> for FileReader<'_> {
     }
 
     fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<(), A::Error> {
-        let mut missing = ["marraztu", "pixel_center", "frames"].map(Some);
+        let mut missing = ["marraztu", "frames"].map(Some);
         while let Some(name) = map.next_key::<String>()? {
             for field in &mut missing {
                 field.take_if(|field| **field == *name);
             }
             match &*name {
                 "marraztu" => drop(map.next_value::<String>()?),
-                "pixel_center" => _ = map.next_value::<f64>()?,
+                "pixel_center" | "camera_angle_x" => _ = map.next_value::<f64>()?,
                 "ids" => {
                     let ids: BTreeMap<String, Value> = map.next_value()?;
                     ids.into_iter().for_each(|(scene, ids)| (self.0)(Piece::Ids(scene, ids)));

@@ -33,6 +33,7 @@ mod open;
 mod page;
 mod plan;
 mod render;
+mod split;
 mod stage;
 mod talk;
 mod target;

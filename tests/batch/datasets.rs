@@ -305,6 +305,84 @@ fn the_segments_of_coco_are_those_of_the_pixels() {
     }
 }
 
+/// The reader of 3D Gaussian Splatting joins the folder, `file_path` and ".png", and takes one
+/// `camera_angle_x` for all frames.
+#[test]
+fn a_split_names_each_picture_once_in_the_layout_of_nerfs_synthetic_scenes() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    let draw = ["batch", "models/wheel.obj", "--views", "fibonacci:10", "--out", "set"];
+    let split = ["--dataset", "nerf", "--split", "8,1,1", "--depth-scale", "10"];
+    ends_with(0, folder.path(), &[&draw[..], &split, &SMALL].concat());
+    let all = json(&at("set/wheel/transforms.json"));
+    let all = all["frames"].as_array().unwrap();
+    let mut seen = Vec::new();
+    for (part, count) in [("train", 8), ("val", 1), ("test", 1)] {
+        let file = json(&at(&format!("set/wheel/transforms_{part}.json")));
+        let frames = file["frames"].as_array().unwrap();
+        assert_eq!(frames.len(), count, "{part}");
+        for frame in frames {
+            let path = format!("{}.png", frame["file_path"].as_str().unwrap());
+            assert!(at("set/wheel").join(&path).is_file(), "{path}");
+            let own = all.iter().find(|own| own["file_path"] == path.as_str()).unwrap();
+            assert_eq!(own["transform_matrix"], frame["transform_matrix"]);
+            assert_eq!(own["camera_angle_x"], file["camera_angle_x"]);
+            seen.push(path);
+        }
+    }
+    seen.sort();
+    seen.dedup();
+    assert_eq!(seen.len(), 10);
+    // A killed run is resumed, with the same files.
+    let names = ["transforms.json", "transforms_train.json", "transforms_test.json"];
+    let before = names.map(|name| std::fs::read(at("set/wheel").join(name)).unwrap());
+    for lost in ["color/00003.png", "transforms.json", "transforms_train.json"] {
+        std::fs::remove_file(at("set/wheel").join(lost)).unwrap();
+    }
+    let again = [&draw[..], &split, &["--resume"], &SMALL].concat();
+    let (_, err) = ends_with(0, folder.path(), &again);
+    assert!(err.contains("1 drawn, 9 unchanged"), "{err}");
+    assert!(before == names.map(|name| std::fs::read(at("set/wheel").join(name)).unwrap()));
+    // A file of another program is never replaced.
+    std::fs::write(at("set/wheel/transforms_val.json"), "mine").unwrap();
+    ends_with(1, folder.path(), &again);
+    let bop = ["--dataset", "bop", "--split", "8,1,1"];
+    ends_with(2, folder.path(), &[&draw[..], &bop, &SMALL].concat());
+}
+
+/// Parts draw pictures and masks, and a last run writes the tables.
+#[test]
+fn a_data_set_drawn_in_parts_equals_one_drawn_at_once() {
+    let folder = folder();
+    for kind in ["nerf", "bop", "coco"] {
+        let draw = |out: &str, more: &[&str]| {
+            let models = ["batch", "models/wheel.obj", "models/cam.obj", "--views", "3"];
+            let dataset = ["--dataset", kind, "--depth-scale", "10", "--out", out];
+            let dataset = if kind == "coco" {
+                [&dataset[..2], &dataset[4..]].concat()
+            } else {
+                dataset.to_vec()
+            };
+            ends_with(0, folder.path(), &[&models[..], &dataset, &SMALL, more].concat());
+        };
+        draw("whole", &[]);
+        draw("parts", &["--shard", "1/2"]);
+        draw("parts", &["--shard", "0/2"]);
+        if kind != "nerf" {
+            draw("parts", &["--resume"]);
+        }
+        let [whole, parts] = ["whole", "parts"].map(|name| contents(&folder.path().join(name)));
+        assert!(whole.len() > 10, "{kind}");
+        assert_eq!(whole.keys().collect::<Vec<_>>(), parts.keys().collect::<Vec<_>>(), "{kind}");
+        for (name, content) in &whole {
+            assert!(parts[name] == *content, "{kind}: {name:?}");
+        }
+        for name in ["whole", "parts"] {
+            std::fs::remove_dir_all(folder.path().join(name)).unwrap();
+        }
+    }
+}
+
 #[test]
 fn a_list_cannot_change_the_layers_and_the_folder_of_a_data_set() {
     let folder = folder();

@@ -62,9 +62,10 @@ use self::studio::{Studio, silence_panics};
 use self::tables::Tables;
 use self::tars::{TarNames, Tars};
 use super::arguments::choice;
-use super::cameras::{CAMERAS, Cameras, Earlier, check_cameras};
+use super::cameras::{CAMERAS, Cameras, Earlier, check_cameras, part_name};
 use super::failure::{Failure, usage};
 use super::layers::NUMBER_ENDINGS;
+use super::split::{Split, split};
 use super::talk::{Talk, is_quiet, note, print};
 use super::values::threads;
 
@@ -136,8 +137,13 @@ pub(crate) struct Batch {
     /// (panoptic). A unit of the models is a metre
     #[arg(long, value_name = "KIND", hide_possible_values = true, requires = "out")]
     #[arg(value_parser = choice(&Dataset::ALL))]
-    #[arg(conflicts_with_all = ["layers", "ids", "format", "shard", "resume", "sheet"])]
+    #[arg(conflicts_with_all = ["layers", "ids", "format", "sheet"])]
     dataset: Option<Dataset>,
+    /// With "--dataset nerf", share the pictures of each model out to train, val and test, such as
+    /// 80,10,10: in transforms_train.json and so on, as of NeRF's synthetic scenes, for Gaussian
+    /// splatting
+    #[arg(long, value_name = "TRAIN,VAL,TEST", value_parser = split, requires = "dataset")]
+    split: Option<Split>,
     /// Place the lights of a data set for each view [default: the same lights in all views of a
     /// model, since training assumes light that stays]
     #[arg(long, requires = "dataset")]
@@ -267,8 +273,12 @@ impl<'a> Results<'a> {
         Ok(Self {
             meter: Meter::of(plan.len()),
             reporter: Reporter::begin(plan, report, times)?,
-            cameras: Cameras::new(name, earlier),
-            tables: arguments.dataset.and_then(|dataset| Tables::of(dataset, folder)),
+            cameras: Cameras::new(name, earlier, arguments.split),
+            // A part of a list does not know all models: the tables are left to a last run.
+            tables: arguments
+                .dataset
+                .filter(|_| !is_part(arguments))
+                .and_then(|dataset| Tables::of(dataset, folder)),
             tars: plan.tars().zip(studio.earlier_tars()).map(|(names, earlier)| {
                 Tars::new(Arc::clone(names), plan.all, Arc::clone(earlier))
             }),
@@ -296,7 +306,8 @@ impl<'a> Results<'a> {
         self.repaired += usize::from(!drawn.findings.is_empty());
         match (&mut self.tables, &drawn.image) {
             (Some(tables), Some(image)) => tables.add(job, image)?,
-            (None, _) | (_, None) => {
+            (None, Some(_)) => {}
+            (_, None) => {
                 drawn.camera.take().map_or(Ok(()), |camera| self.cameras.add(*camera))?;
             }
         }
@@ -323,13 +334,19 @@ impl Batch {
     }
 }
 
+/// Returns whether only a part of the list is drawn.
+fn is_part(arguments: &Batch) -> bool {
+    arguments.shard.is_some_and(|shard| shard != Shard::WHOLE)
+}
+
 /// Returns the name of the file of cameras.
 fn cameras_name(arguments: &Batch) -> String {
     match arguments.shard {
-        Some(shard) if shard != Shard::WHOLE => {
+        // All views of a model, which has a folder of its own, are in one part.
+        _ if arguments.dataset == Some(Dataset::Nerf) => "transforms.json".to_owned(),
+        Some(shard) if is_part(arguments) => {
             format!("cameras-{}-of-{}.json", shard.index, shard.count)
         }
-        _ if arguments.dataset == Some(Dataset::Nerf) => "transforms.json".to_owned(),
         _ => CAMERAS.to_owned(),
     }
 }
@@ -346,7 +363,10 @@ fn check_files(arguments: &Batch, cameras: &str, plan: &Plan, rows: &Rows) -> Re
         let with_layers = plan.jobs().filter(|job| job.options().layers.are_given());
         folders.extend(with_layers.map(|job| job.cameras_folder(arguments.dataset).to_owned()));
     }
-    let cameras: Vec<PathBuf> = folders.into_iter().map(|folder| folder.join(cameras)).collect();
+    let parts = arguments.split.into_iter().flat_map(Split::parts).map(part_name);
+    let names: Vec<String> = parts.chain([cameras.to_owned()]).collect();
+    let in_folder = |folder: PathBuf| names.iter().map(move |name| folder.join(name));
+    let cameras: Vec<PathBuf> = folders.into_iter().flat_map(in_folder).collect();
     // Collecting the inputs takes long, and a file that does not exist is none.
     let inputs = match reports.iter().copied().chain(&cameras).any(|path| path.exists()) {
         true => rows.inputs(),
@@ -358,6 +378,9 @@ fn check_files(arguments: &Batch, cameras: &str, plan: &Plan, rows: &Rows) -> Re
             return Err(usage("--sheet shows files, and --out names archives"));
         }
         check_sheets(grid, &arguments.sheets, plan)?;
+    }
+    if arguments.split.is_some() && arguments.dataset != Some(Dataset::Nerf) {
+        return Err(usage("--split is for --dataset nerf"));
     }
     if let Some(dataset) = arguments.dataset {
         let folder = Path::new(arguments.out.as_deref().unwrap_or_default());

@@ -52,7 +52,16 @@ impl Attempt<'_> {
         {
             // Whole files are read, and models with findings loaded, only for a report.
             folders.clone().try_for_each(|folder| studio.prepare_folder(folder))?;
-            return self.unchanged(has_findings(&stamp));
+            let drawn = self.unchanged(has_findings(&stamp))?;
+            // Tables describe all pictures, also those of an earlier run.
+            let image = match studio.arguments.dataset {
+                Some(Dataset::Bop | Dataset::Coco) => {
+                    let (stage, _) = self.stage()?;
+                    self.dataset_image(renderer, &stage)?
+                }
+                Some(Dataset::Nerf) | None => None,
+            };
+            return Ok(Drawn { image, ..drawn });
         }
         let (stage, findings) = self.stage()?;
         let sources = stage.sources(std::slice::from_ref(&job.row.file));
