@@ -25,6 +25,38 @@ fn the_poses_of_bop_project_the_model_onto_its_mask() {
         let models = serde_json::json!({"1": "box.obj", "2": "crate.obj"});
         assert_eq!(json(&at(&out).join("models.json")), models);
         fits_its_poses(&at(&out).join("000000"));
+        has_the_box(&at(&out).join("models"));
+    }
+}
+
+/// Checks that the models are the box, in millimetres and with the axes of its file.
+#[track_caller]
+fn has_the_box(models: &Path) {
+    let infos = json(&models.join("models_info.json"));
+    let diameter = 2.0 * f64::sqrt(200.0 * 200.0 + 100.0 * 100.0 + 50.0 * 50.0);
+    for id in ["1", "2"] {
+        let info = &infos[id];
+        let near = |name: &str, want: f64| (info[name].as_f64().unwrap() - want).abs() < 1e-4;
+        for (axis, half) in [("x", 200.0), ("y", 100.0), ("z", 50.0)] {
+            assert!(near(&format!("min_{axis}"), -half), "{info}");
+            assert!(near(&format!("size_{axis}"), 2.0 * half), "{info}");
+        }
+        assert!(near("diameter", diameter), "{info}");
+        let ply = std::fs::read(models.join(format!("obj_00000{id}.ply"))).unwrap();
+        let end = ply.windows(11).position(|it| it == b"end_header\n").unwrap() + 11;
+        let head = std::str::from_utf8(&ply[..end]).unwrap();
+        assert!(
+            head.contains("element vertex 8\n") && head.contains("element face 12\n"),
+            "{head}"
+        );
+        let (points, faces) = ply[end..].split_at(8 * 12);
+        for point in points.chunks(12) {
+            let place = [0, 4, 8].map(|i| f32::from_le_bytes(point[i..i + 4].try_into().unwrap()));
+            let halves = place.map(|x| x.abs().round() as i32);
+            assert_eq!(halves, [200, 100, 50]);
+        }
+        assert_eq!(faces.len(), 12 * 13);
+        assert!(faces.chunks(13).all(|face| face[0] == 3 && face[1] < 8));
     }
 }
 

@@ -3,7 +3,7 @@
 //! * `nerf`, for each model: `STEM/{color,depth,mask}/00000.png` and `STEM/transforms.json`.
 //! * `bop`, for each model or scene: `000000/{rgb,depth}/000000.png`,
 //!   `000000/{mask,mask_visib}/000000_000000.png`, and the tables `scene_camera.json`,
-//!   `scene_gt.json` and `scene_gt_info.json`.
+//!   `scene_gt.json` and `scene_gt_info.json`; and the [models](super::models).
 //! * `coco`: `images/000000.png`, `panoptic/000000.png`, and the tables
 //!   `annotations/{panoptic,instances}.json`.
 //!
@@ -17,8 +17,9 @@ use std::path::{Path, PathBuf};
 
 use glam::{DMat3, DMat4};
 use marraztu_core::accuracy::Shot;
+use marraztu_core::base::Shared;
 use marraztu_core::base::image::Size;
-use marraztu_core::scene::{Command, Item, Object, ObjectId, Projection, UpAxis};
+use marraztu_core::scene::{Command, Item, Model, Object, ObjectId, Projection, UpAxis};
 use marraztu_io::{self as io, LayerKind, LayerNumbers, LayerPicture, PngNumbers};
 use marraztu_render::{AxesConvention, PictureCamera, Renderer};
 
@@ -97,6 +98,8 @@ pub(super) struct DatasetObject {
     pub(super) id: i32,
     /// The model's file, or the name of the object.
     pub(super) model: PathBuf,
+    /// The loaded model.
+    pub(super) loaded: Shared<Model>,
     /// From the model, with the axes of its file, to the camera, with the axes of OpenCV.
     pub(super) camera_from_model: DMat4,
     /// The visible pixels.
@@ -231,6 +234,7 @@ impl DatasetObject {
         Self {
             id,
             model: file.map_or_else(|| PathBuf::from(&object.name), Path::to_owned),
+            loaded: object.model.clone(),
             camera_from_model: camera.camera_from_world(AxesConvention::OpenCv)
                 * object.world_from_object(shot.view.time)
                 * upright(object.model.options.up),
@@ -261,7 +265,7 @@ fn mask_png(size: Size, mask: &[bool]) -> Result<Vec<u8>, Fault> {
 }
 
 /// Returns the rotation of a loaded model from its file: data sets name the file, with its axes.
-fn upright(up: UpAxis) -> DMat4 {
+pub(super) fn upright(up: UpAxis) -> DMat4 {
     let [x, y, z] = DMat3::IDENTITY.to_cols_array_2d().map(|axis| up.upright(axis).into());
     DMat4::from_mat3(DMat3::from_cols(x, y, z))
 }

@@ -19,6 +19,7 @@ mod jobs;
 pub(super) mod list;
 mod masks;
 mod meter;
+mod models;
 mod options;
 mod outcome;
 mod outputs;

@@ -15,10 +15,8 @@ use serde_json::{Value, json};
 
 use super::dataset::{Dataset, DatasetImage, DatasetObject, nine};
 use super::jobs::Job;
+use super::models::{BopModel, MILLIMETRES};
 use crate::cli::failure::Failure;
-
-/// Millimetres per unit.
-const MILLIMETRES: f64 = 1000.0;
 
 /// The beginning of a gap in the text of an entry. No other text in an entry has this character.
 const GAP: &str = "\u{1}";
@@ -46,6 +44,9 @@ pub(super) struct Tables {
     pictures: Vec<Entries>,
     /// Three files of entries, after the first picture.
     spools: Option<[Spool; 3]>,
+    /// The geometry of the models of BOP, and the entries that describe it.
+    geometry: Option<Spool>,
+    geometries: Vec<(Range<u64>, Value)>,
 }
 
 /// The entries of a picture.
@@ -67,11 +68,20 @@ impl Tables {
             Dataset::Coco => Kind::Coco,
         };
         let (models, pictures, folder) = (BTreeMap::new(), Vec::new(), folder.to_owned());
-        Some(Self { kind, folder, models, pictures, spools: None })
+        let (geometry, geometries) = (None, Vec::new());
+        Some(Self { kind, folder, models, pictures, spools: None, geometry, geometries })
     }
 
     /// Adds a picture. Fails if it cannot be written.
     pub(super) fn add(&mut self, job: &Job, image: &DatasetImage) -> Result<(), SaveError> {
+        if self.kind == Kind::Bop {
+            for object in &image.objects {
+                if !self.models.contains_key(&object.model) {
+                    self.models.insert(object.model.clone(), self.models.len());
+                    self.add_geometry(object)?;
+                }
+            }
+        }
         let mut gap = |object: &DatasetObject| {
             let next = self.models.len();
             let number = match self.models.get(&object.model) {
@@ -96,6 +106,17 @@ impl Tables {
         }
         let (row, view, index) = (job.row.number, job.view(), job.index);
         self.pictures.push(Entries { row, view, index, places });
+        Ok(())
+    }
+
+    /// Adds the geometry of a new model.
+    fn add_geometry(&mut self, object: &DatasetObject) -> Result<(), SaveError> {
+        let spool = match self.geometry.take() {
+            Some(spool) => spool,
+            None => Spool::begin(&self.folder)?,
+        };
+        let (spool, model) = (self.geometry.insert(spool), BopModel::new(&object.loaded));
+        self.geometries.push((spool.push(&model.ply())?, model.info()));
         Ok(())
     }
 
@@ -135,6 +156,18 @@ impl Tables {
             models.iter().map(|(id, name)| (id.to_string(), name)).collect();
         let mut file = begin(&self.folder.join("models.json"))?;
         file.push(format!("{}\n", json!(names)).as_bytes())?;
+        file.finish()?;
+        let folder = self.folder.join("models");
+        let mut infos = BTreeMap::new();
+        for (number, (place, info)) in numbers.iter().zip(&self.geometries) {
+            let Some(geometry) = &mut self.geometry else { continue };
+            let mut file = begin(&folder.join(format!("obj_{number:06}.ply")))?;
+            file.push(&geometry.get(place)?)?;
+            file.finish()?;
+            infos.insert(number.to_string(), info);
+        }
+        let mut file = begin(&folder.join("models_info.json"))?;
+        file.push(format!("{}\n", json!(infos)).as_bytes())?;
         Ok(file.finish()?)
     }
 
