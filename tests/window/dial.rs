@@ -118,7 +118,7 @@ fn settings_of_the_users_own_have_a_row_and_a_way_back() {
     rest(&mut editor);
     let rows = texts_of_rows(&editor);
     assert_eq!(rows.len(), 5, "{rows:?}");
-    assert!(rows[4].starts_with("Own, 1 sample: "), "{rows:?}");
+    assert!(rows[4].starts_with("Custom, 1 sample: "), "{rows:?}");
     let measured = editor.state().dial.figures().to_vec();
     assert_eq!(measured.len(), 5);
     let ideal = measured[4].error.map(|error| error.value);

@@ -2,8 +2,8 @@
 //!
 //! Each row is a preset with the time and the error of its picture; a further row has the user's
 //! own settings, if there are any. The editor measures them while nothing happens; until then, the
-//! figures are grey. A click draws with the settings of a row. Over a low picture, the dial is one
-//! row, which unfolds the others.
+//! figures are grey. Bars show how times rise, in powers of ten, and errors fall. A click draws
+//! with the settings of a row. Over a low picture, the dial is one row, which unfolds the others.
 
 use std::time::Duration;
 
@@ -29,6 +29,10 @@ pub(super) const RIGHT: f32 = WIDTH + 36.0;
 
 /// The right ends of the columns of samples, time and error.
 const COLUMNS: [f32; 3] = [134.0, 200.0, WIDTH - 6.0];
+
+/// The length of the longest bar, and the powers of ten of the bar of the shortest time.
+const BAR: f32 = 46.0;
+const SHORTEST: f64 = 0.5;
 
 /// The dial is hidden over a smaller picture.
 const LEAST: egui::Vec2 = vec2(400.0, 100.0);
@@ -183,7 +187,7 @@ fn rows(state: &State) -> Vec<Row> {
         let settings = own.modelled_as(&state.settings);
         let preset = ACCURACY_PRESETS.iter().find(|preset| preset.of(&settings) == settings);
         let hint = format!("The settings of this scene: {}.", settings.in_words());
-        Row { label: preset.map_or("Own", |preset| preset.label), hint, settings, action: None }
+        Row { label: preset.map_or("Custom", |preset| preset.label), hint, settings, action: None }
     });
     presets.chain(own).collect()
 }
@@ -212,6 +216,25 @@ impl Row {
         [samples, time, error.unwrap_or_else(unknown)]
     }
 
+    /// Returns the lengths of the bars under samples, time and error, from 0 to 1.
+    #[expect(clippy::cast_possible_truncation, reason = "for the eye")]
+    fn bars(&self, state: &State) -> [Option<f32>; 3] {
+        let figures = state.dial.figures();
+        let Some(own) = state.dial.of(&self.settings).filter(|_| state.dial.current) else {
+            return [None; 3];
+        };
+        let times = || figures.iter().map(|it| it.ms.value).filter(|ms| *ms > 0.0);
+        let [least, most] =
+            [times().fold(f64::INFINITY, f64::min), times().fold(0.0, f64::max)].map(libm::log10);
+        // The shortest time has a short bar, too.
+        let time = (libm::log10(own.ms.value) - least + SHORTEST) / (most - least + SHORTEST);
+        let errors = figures.iter().filter_map(|it| it.error);
+        let largest = errors.map(|error| error.value).fold(0.0, f64::max);
+        let error = own.error.map(|error| error.value / largest);
+        let part = |part: f64| part.is_finite().then(|| part.clamp(0.0, 1.0) as f32);
+        [None, part(time), error.and_then(part)]
+    }
+
     /// Shows the row. Returns whether it was clicked.
     fn ui(&self, ui: &mut Ui, state: &State, (id, is_stop): (Id, bool)) -> bool {
         let is_on = self.settings == state.settings;
@@ -231,9 +254,17 @@ impl Row {
         let weak = ui.visuals().weak_text_color();
         let is_steady = state.dial.of(&self.settings).is_some_and(|it| is_steady(&it.ms));
         let inks = [ink, if is_steady { ink } else { weak }, ink];
-        for ((text, right), ink) in texts.iter().zip(COLUMNS).zip(inks) {
+        let bars = self.bars(state);
+        for (((text, right), ink), bar) in texts.iter().zip(COLUMNS).zip(inks).zip(bars) {
             let ink = if state.dial.current { ink } else { weak };
             right_text(ui, column(rect, right), text, TextStyle::Body, ink);
+            if let Some(part) = bar.filter(|part| *part > 0.0) {
+                let left = rect.left() + right - BAR * part;
+                let bottom = rect.bottom() - 1.0;
+                let bar =
+                    Rect::from_min_max(pos2(left, bottom - 2.0), pos2(rect.left() + right, bottom));
+                ui.painter().rect_filled(bar, 1.0, theme::accent(ui.visuals()).gamma_multiply(0.8));
+            }
         }
         focus_ring(ui, rect, &response);
         let key = self.action.and_then(|action| first_key(ui, action));
