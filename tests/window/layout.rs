@@ -6,7 +6,7 @@
 use egui::{Rect, Shape};
 use egui_kittest::kittest::Queryable as _;
 use marraztu::app::actions::{Action, Request};
-use marraztu::app::panels::Panel;
+use marraztu::app::panels::{OpenPanels, Panel};
 use marraztu_core::edit::{Gesture, items};
 use marraztu_core::scene::ItemId;
 
@@ -197,4 +197,27 @@ fn a_narrow_window_shows_the_picture_with_one_panel_at_a_time() {
     }
     editor.click_label(COLUMNS[2].info().label);
     assert_eq!(editor.picture().width(), whole);
+}
+
+#[test]
+fn a_presentation_shows_the_picture_in_large_type_and_gives_everything_back() {
+    let mut editor = Editor::of_size(1400.0, 1000.0);
+    let (panels, window) = (editor.state().panels, editor.state().window());
+    let (before, zoom) = (editor.picture(), editor.state().zoom);
+    assert!(editor.shows("File") && panels != OpenPanels::NONE);
+    for end in [Action::Escape, Action::Present] {
+        editor.perform(Action::Present);
+        editor.settle();
+        assert!(!editor.shows("File") && editor.shows("ends the presentation"));
+        assert_eq!(editor.state().panels, OpenPanels::NONE);
+        assert_eq!(editor.state().window(), window, "a scene that is saved keeps its panels");
+        assert!(editor.state().zoom > 1.4 * zoom);
+        // A key still opens a panel.
+        editor.perform(Action::Panel(Panel::Plan));
+        assert!(editor.state().panels.has(Panel::Plan));
+        editor.perform(end);
+        editor.settle();
+        assert_eq!((editor.state().panels, editor.state().zoom), (panels, zoom), "{end:?}");
+        assert_eq!(editor.picture(), before);
+    }
 }

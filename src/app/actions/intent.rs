@@ -44,6 +44,8 @@ pub(crate) enum Intent {
     ChooseTexture(Vec<ObjectId>),
     /// Find out why an object cannot be seen.
     WhyUnseen(ObjectId),
+    /// Begin or end a presentation.
+    Present,
     /// Scale the interface.
     Zoom(f32),
     /// Show or hide the loupe.

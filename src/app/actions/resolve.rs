@@ -285,6 +285,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
         Action::SmallerText => zoom(state, -0.1),
         Action::NormalText => Ok(Intent::Zoom(1.0)),
         Action::Panel(panel) => toggle(state, panel),
+        Action::Present => Ok(Intent::Present),
         Action::MeasurePlan => Ok(Intent::Measure),
         Action::ThemeSystem => Ok(Intent::Theme(ThemePreference::System)),
         Action::ThemeLight => Ok(Intent::Theme(ThemePreference::Light)),

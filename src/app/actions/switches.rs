@@ -102,6 +102,7 @@ impl Action {
                 Some(side) => state.layout.unfolded == Some(side),
                 None => state.panels.has(panel),
             },
+            Self::Present => state.presenting.is_some(),
             Self::MeasurePlan => state.plan.measuring,
             Self::ThemeSystem => state.theme == ThemePreference::System,
             Self::ThemeLight => state.theme == ThemePreference::Light,

@@ -460,6 +460,10 @@ actions! {
         "Focus previous region"
         "Moves keyboard focus to the previous region; from the first, to the viewport."
         "focus previous region tab";
+    Present Window ONCE [Named(Key::F11)]
+        "Presentation"
+        "Shows the picture and the dial alone on the full screen, in large type; Esc ends it."
+        "full screen fullscreen lecture projector beamer teach large";
     MeasurePlan Window ONCE [Named(Key::F4)]
         "Measure effects" "Measures the time of a picture with and without each effect."
         "benchmark time profile speed";

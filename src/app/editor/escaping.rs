@@ -20,7 +20,8 @@ impl App {
     /// Performs Esc.
     pub(super) fn escape(&mut self, ctx: &Context) {
         let now = ctx.input(|input| input.time);
-        if self.dismisses(ctx) || self.cancels(ctx) || self.deselects() {
+        if self.dismisses(ctx) || self.cancels(ctx) || self.ends_presenting(ctx) || self.deselects()
+        {
             self.forget_quitting();
         } else if cfg!(target_family = "wasm") {
             self.state.tell(Some("There is nothing to cancel".to_owned()));

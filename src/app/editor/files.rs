@@ -391,6 +391,7 @@ impl App {
             (old.overlays, old.palette, old.gizmo, old.helpers);
         (new.watches, new.up, new.zoom, new.narrow) = (old.watches, old.up, old.zoom, old.narrow);
         (new.picture_only, new.greeting) = (old.picture_only, old.greeting);
+        new.presenting = old.presenting;
         new.dial = DialState { shown: old.dial.shown, own: new.dial.own, ..DialState::default() };
         new.statistics = old.statistics.clone();
         new.recent = std::mem::take(&mut old.recent);

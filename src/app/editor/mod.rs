@@ -20,6 +20,7 @@ mod missing;
 mod noticing;
 mod orders;
 mod preferences;
+mod presenting;
 mod reloading;
 mod requests;
 mod scenes;

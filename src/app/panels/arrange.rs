@@ -1,6 +1,8 @@
 //! Arranges the panels around the picture and shows the open ones.
 
-use egui::{Frame, Layout, Margin, Rect, Ui, UiBuilder, Vec2, Window, vec2};
+use egui::{
+    Align2, Area, Frame, Id, Layout, Margin, Order, Rect, Ui, UiBuilder, Vec2, Window, vec2,
+};
 
 use super::{Dock, Panel, Side, each_panel};
 use super::{dial, greeting, lesson_card, menu_bar, palette, splitters, status_line};
@@ -82,8 +84,28 @@ impl Arrangement {
         dial::show(ui, self.places.picture, state, requests);
         dial::progress_ui(ui, self.places.picture, state, requests);
         greeting::show(ui, self.places.picture, state, requests);
+        if let Some(presenting) = state.presenting {
+            hint_ui(ui, self.places.picture, presenting.since);
+        }
         splitters::show(ui, state, self.area, &self.places, requests);
     }
+}
+
+/// The seconds for which a presentation tells how it ends.
+const HINTED: f64 = 4.0;
+
+/// Tells how a presentation ends, at its beginning.
+fn hint_ui(ui: &Ui, picture: Rect, since: f64) {
+    let left = since + HINTED - ui.input(|input| input.time);
+    if left <= 0.0 {
+        return;
+    }
+    ui.ctx().request_repaint_after(std::time::Duration::from_secs_f64(left));
+    let area = Area::new(Id::unique("presentation")).order(Order::Middle).interactable(false);
+    let at = picture.center_bottom() - vec2(0.0, 12.0);
+    area.pivot(Align2::CENTER_BOTTOM).fixed_pos(at).show(ui.ctx(), |ui| {
+        Frame::popup(ui.style()).show(ui, |ui| ui.label("F11 or Esc ends the presentation"));
+    });
 }
 
 /// Shows the bars and all open docked panels.
@@ -94,15 +116,18 @@ pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) -> Arran
     }
     let fill = ui.visuals().panel_fill;
     let bar = Frame::new().fill(fill).inner_margin(Margin::symmetric(theme::MARGIN, 2));
-    egui::Panel::top("menu bar").frame(bar).show(ui, |ui| {
-        regions::begin(ui, "menus");
-        menu_bar::show(ui, state, requests);
-    });
-    egui::Panel::bottom("status line")
-        .frame(bar)
-        .show(ui, |ui| status_line::show(ui, state, requests));
+    if state.presenting.is_none() {
+        egui::Panel::top("menu bar").frame(bar).show(ui, |ui| {
+            regions::begin(ui, "menus");
+            menu_bar::show(ui, state, requests);
+        });
+        egui::Panel::bottom("status line")
+            .frame(bar)
+            .show(ui, |ui| status_line::show(ui, state, requests));
+    }
     let area = ui.available_rect_before_wrap();
     let mut layout = state.layout;
+    layout.bare = state.presenting.is_some();
     if state.renaming.is_some() {
         // The outline is needed for renaming, so it is shown while an item is renamed.
         layout.unfolded = Some(Side::Outline);

@@ -183,6 +183,9 @@ impl OpenPanels {
         Self(open)
     };
 
+    /// No panels.
+    pub const NONE: Self = Self([false; Panel::ALL.len()]);
+
     /// Returns whether a panel is open.
     pub const fn has(self, panel: Panel) -> bool {
         self.0[panel as usize]

@@ -202,15 +202,17 @@ fn switch(ui: &mut Ui, label: &str, on: &mut bool) {
 
 /// Returns the current preferences, with the last known size of the window.
 pub(crate) fn now(ctx: &egui::Context, state: &State, before: Option<[f32; 2]>) -> Preferences {
-    let scale = ctx.zoom_factor();
+    let scale = state.presenting.map_or_else(|| ctx.zoom_factor(), |before| before.zoom);
     let (rect, maximized, minimized) = ctx.input(|input| {
         let viewport = input.viewport();
         (viewport.inner_rect, viewport.maximized, viewport.minimized)
     });
     let maximized = maximized.unwrap_or(false);
     let size = rect.map(|rect| (rect.size() * scale).round());
-    // A maximized or minimized window says nothing about the usual size.
-    let size = size.filter(|_| !maximized && minimized != Some(true));
+    // A maximized or minimized window, or one on the full screen, says nothing about the usual
+    // size.
+    let is_usual = !maximized && minimized != Some(true) && state.presenting.is_none();
+    let size = size.filter(|_| is_usual);
     let whole = |size: egui::Vec2| [size.x, size.y];
     Preferences {
         theme: match state.theme {
@@ -218,7 +220,7 @@ pub(crate) fn now(ctx: &egui::Context, state: &State, before: Option<[f32; 2]>) 
             ThemePreference::Light => Theme::Light,
             ThemePreference::Dark => Theme::Dark,
         },
-        panels: state.panels.lasting().kept(),
+        panels: state.lasting_panels().kept(),
         gizmo: state.gizmo,
         scale,
         window: size.map(whole).or(before),

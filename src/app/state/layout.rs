@@ -72,6 +72,8 @@ pub struct Layout {
     pub(crate) wishes: [Option<f32>; Splitter::ALL.len()],
     /// The panel that is unfolded in a narrow window.
     pub unfolded: Option<Side>,
+    /// Whether the picture has the whole width: no side panel, and no buttons that unfold one.
+    pub bare: bool,
 }
 
 /// The places of everything between the menus and the status line.
@@ -95,7 +97,7 @@ impl Layout {
     /// Creates the layout with these sizes.
     pub fn of_shares(shares: &BTreeMap<String, f32>) -> Self {
         let wishes = Splitter::ALL.map(|splitter| shares.get(&splitter.word()).copied());
-        Self { wishes, unfolded: None }
+        Self { wishes, ..Self::default() }
     }
 
     const fn wish(&self, splitter: Splitter) -> Option<f32> {
@@ -119,7 +121,9 @@ impl Layout {
             let part = self.wish(Splitter::Laboratory).unwrap_or(0.5);
             places.cut_off(Dock::Bottom, share(area.height(), part, 150.0, 150.0));
         }
-        if area.width() < NARROW {
+        if self.bare {
+            // The picture has no columns beside it.
+        } else if area.width() < NARROW {
             self.one_column(&mut places);
         } else {
             self.columns(area.width(), panels, &mut places);
@@ -300,7 +304,7 @@ mod tests {
 
     fn wished(width: f32, part: f32) -> Layout {
         let wishes = [width, width, part, part, part].map(Some);
-        Layout { wishes, unfolded: Some(Side::Properties) }
+        Layout { wishes, unfolded: Some(Side::Properties), bare: false }
     }
 
     #[test]

@@ -37,6 +37,17 @@ pub use viewpoints::Viewpoints;
 /// The number of items from which the outline has a filter.
 const MANY: usize = 12;
 
+/// A presentation: what it has replaced, and when it began.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Presenting {
+    /// The open panels before.
+    pub panels: OpenPanels,
+    /// The size of the interface before.
+    pub zoom: f32,
+    /// The seconds since the program started, at the beginning.
+    pub since: f64,
+}
+
 /// The scene being edited, and everything shown about it.
 #[derive(Debug)]
 pub struct State {
@@ -110,6 +121,8 @@ pub struct State {
     pub narrow: bool,
     /// Whether only the picture is shown, to look at: a page in which it is embedded.
     pub picture_only: bool,
+    /// What a presentation has replaced, while there is one.
+    pub presenting: Option<Presenting>,
     /// Whether the window is light or dark.
     pub theme: ThemePreference,
     /// The state of the laboratory.
@@ -192,6 +205,7 @@ impl State {
             zoom: 1.0,
             narrow: false,
             picture_only: false,
+            presenting: None,
             theme: ThemePreference::System,
             lab: Laboratory::default(),
             recent: Vec::new(),
@@ -364,11 +378,16 @@ impl State {
         Sources::of(&self.scene).with(&self.path)
     }
 
+    /// Returns the panels that files and preferences remember: not those of a presentation.
+    pub(crate) fn lasting_panels(&self) -> OpenPanels {
+        self.presenting.map_or(self.panels, |before| before.panels).lasting()
+    }
+
     /// Returns the state of the window that a scene file stores.
     pub fn window(&self) -> WindowState {
         WindowState {
             coarse_while_moving: self.coarse_while_moving,
-            panels: self.panels.lasting().kept(),
+            panels: self.lasting_panels().kept(),
         }
     }
 
