@@ -209,6 +209,12 @@ kinds! {
     MendedPacked [Joined]:
         "material \"@\": with bsdf pbr, Ks is taken as occlusion, roughness and metalness",
         "# materials: with bsdf pbr, Ks is taken as occlusion, roughness and metalness";
+    MendedRough [Joined]:
+        "material \"@\": without Ks and Ns, the highlight follows from Pr and Pm",
+        "# materials: without Ks and Ns, the highlights follow from Pr and Pm";
+    MendedMetal [Joined]:
+        "material \"@\" is a metal of Blender: Ka is its metalness, and Ks gets the colour of Kd",
+        "# materials are metals of Blender: Ka is their metalness, and Ks gets the colour of Kd";
     Illumination [Joined]:
         "material \"@\": illum is not a whole number from 0 to 7: it is drawn as 2",
         "# materials: illum is not a whole number from 0 to 7: it is drawn as 2";

@@ -1,6 +1,7 @@
 //! The arguments of a map statement: a file name, with options before or after it.
 
 use super::statement;
+use super::tone::{Channel, Tone};
 use crate::obj::lines::decode;
 use marraztu_core::scene::Wrap;
 
@@ -14,6 +15,7 @@ pub(super) struct Map {
     pub(super) scale: [f64; 2],
     /// The factor of `-bm`.
     pub(super) gain: f64,
+    pub(super) tone: Tone,
     /// Options that would change the picture but are ignored.
     pub(super) ignored: Vec<&'static str>,
     /// All options as in the file.
@@ -21,8 +23,8 @@ pub(super) struct Map {
 }
 
 /// Options that would change the picture but are ignored, with their numbers of arguments:
-/// turbulence, base and gain of the texels, the channel of a scalar map, boosted sharpness.
-const IGNORED: [(&str, usize); 4] = [("-t", 3), ("-mm", 2), ("-imfchan", 1), ("-boost", 1)];
+/// turbulence, and boosted sharpness.
+const IGNORED: [(&str, usize); 2] = [("-t", 3), ("-boost", 1)];
 
 /// Parses the arguments; `None` without a name.
 pub(super) fn map(rest: &[u8]) -> Option<Map> {
@@ -32,6 +34,7 @@ pub(super) fn map(rest: &[u8]) -> Option<Map> {
         offset: [0.0; 2],
         scale: [1.0; 2],
         gain: 1.0,
+        tone: Tone::default(),
         ignored: Vec::new(),
         options: String::new(),
     };
@@ -79,7 +82,7 @@ impl Map {
         let word = word.to_ascii_lowercase();
         if let Some((option, most)) = IGNORED.iter().find(|(option, _)| *option == word) {
             self.ignored.push(option);
-            return Some(if *option == "-imfchan" { 1 } else { numbers(*most).len() });
+            return Some(numbers(*most).len());
         }
         Some(match word.as_str() {
             "-clamp" => {
@@ -93,6 +96,19 @@ impl Map {
                 let given = numbers(1);
                 self.gain = given.first().copied().unwrap_or(self.gain);
                 given.len()
+            }
+            "-mm" => {
+                let given = numbers(2);
+                let [base, gain] = [(0, 0.0), (1, 1.0)].map(|(i, or)| *given.get(i).unwrap_or(&or));
+                self.tone = Tone { base, gain, ..self.tone };
+                given.len()
+            }
+            "-imfchan" => {
+                self.tone.channel = following.first().and_then(|(_, word)| Channel::named(word));
+                if self.tone.channel.is_none() {
+                    self.ignored.push("-imfchan");
+                }
+                1
             }
             "-texres" => numbers(1).len(),
             "-blendu" | "-blendv" | "-cc" | "-type" | "-colorspace" => 1,
@@ -121,6 +137,7 @@ mod tests {
             offset: [0.0; 2],
             scale: [1.0; 2],
             gain: 1.0,
+            tone: Tone::default(),
             ignored: Vec::new(),
             options: String::new(),
         };
@@ -132,11 +149,14 @@ mod tests {
                 offset: [0.1, 0.0],
                 scale: [2.0, 3.0],
                 gain: 1.5,
-                ignored: vec!["-mm", "-imfchan"],
+                tone: Tone { channel: Some(Channel::Red), ..Tone::default() },
                 options: "-clamp on -o 0.1 -s 2 3 0 -mm 0 1 -imfchan r -bm 1.5".into(),
                 ..plain
             })
         );
+        let toned = map("-mm 0.5 2 -imfchan z -t 1 2 3 a  b.png").unwrap();
+        assert_eq!(toned.tone, Tone { base: 0.5, gain: 2.0, channel: None });
+        assert_eq!(toned.ignored, ["-imfchan", "-t"]);
         assert_eq!(map("-s 1 1 1"), None);
     }
 }

@@ -28,15 +28,27 @@ impl Statements {
         let diffuse = self.mended_diffuse(&mut note);
         let ambient = self.mended_ambient(diffuse, &mut note);
         // A packed Ks is not a colour: the highlight follows from roughness and metalness.
-        let (specular, exponent) = match self.packed() {
-            Some(packed) => {
+        let (specular, exponent) = match (self.packed(), self.roughness()) {
+            (Some(packed), _) => {
                 note(FindingKind::MendedPacked);
                 highlight(packed, diffuse, self.exponent.filter(|exponent| *exponent >= 1.0))
             }
-            None => {
+            (None, Some(rough)) => {
+                note(FindingKind::MendedRough);
+                highlight(rough, diffuse, None)
+            }
+            (None, None) => {
                 let specular = self.mended_specular(&mut note);
                 self.mended_highlight(specular, &mut note)
             }
+        };
+        let specular = match self.metalness() {
+            Some(metalness) => {
+                note(FindingKind::MendedMetal);
+                let mixed = |i| specular[i] * (1.0 - metalness) + diffuse[i] * metalness;
+                std::array::from_fn(mixed)
+            }
+            None => specular,
         };
         let opacity = self.mended_opacity(&mut note);
         let optics = self.optics();
@@ -136,6 +148,9 @@ impl Statements {
                 || ambient.iter().all(|x| *x >= 1.0)
                 || ambient.iter().any(|x| *x > 1.0)
         };
+        if self.metalness().is_some() {
+            return shade;
+        }
         match self.ambient {
             Some(ambient) if self.is_own || !nonsense(ambient) => clamped(ambient, note),
             given => {
@@ -190,6 +205,23 @@ impl Statements {
     /// Returns occlusion, roughness and metalness, if Ks holds them.
     fn packed(&self) -> Option<[f64; 3]> {
         self.specular.filter(|_| self.is_packed)
+    }
+
+    /// Returns occlusion, roughness and metalness of `Pr` and `Pm`, if nothing else describes the
+    /// highlight.
+    fn roughness(&self) -> Option<[f64; 3]> {
+        let is_lit = self.illumination.is_none_or(|model| model > 1.0);
+        let is_free = self.specular.is_none() && self.exponent.is_none() && is_lit;
+        let number = |word| self.undrawn.get(word).and_then(|numbers| numbers.first()).copied();
+        let roughness = number("Pr").filter(|_| is_free)?;
+        Some([1.0, roughness, number("Pm").unwrap_or(0.0)])
+    }
+
+    /// Returns the metalness of a metal of Blender, which writes it as Ka with `illum` 3 or 6.
+    fn metalness(&self) -> Option<f64> {
+        let is_metal = self.is_of_blender && matches!(self.illumination, Some(3.0 | 6.0));
+        let [r, g, b] = self.ambient.filter(|_| is_metal)?;
+        (r == g && g == b && (0.0..=1.0).contains(&r)).then_some(r)
     }
 
     fn mended_opacity(&self, note: &mut dyn FnMut(FindingKind)) -> f64 {

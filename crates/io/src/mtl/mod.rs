@@ -9,6 +9,7 @@ mod mend;
 mod normal_map;
 mod statement;
 mod statements;
+mod tone;
 mod undrawn;
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -19,6 +20,7 @@ use self::mend::scale_bytes;
 use self::normal_map::shows_normals;
 pub(super) use self::statements::map_names;
 use self::statements::{Statements, read_statements};
+use self::tone::{Channel, Tone};
 use super::error::{LFS_POINTER, LoadError, short_name, shown};
 use super::findings::{Finding, FindingKind, Findings, joined};
 use super::locate::Locator;
@@ -58,9 +60,12 @@ pub(super) struct Library<'a> {
     texels: usize,
     /// The paths of textures, by the folder of the MTL file and the name in it.
     found: BTreeMap<(PathBuf, String), Option<PathBuf>>,
-    /// Textures by path, wrapping, and the bits of offset and scale: equal textures are shared.
-    textures: BTreeMap<(PathBuf, bool, [u64; 4]), Shared<Texture>>,
+    /// Textures by path and options: equal textures are shared.
+    textures: BTreeMap<TextureKey, Shared<Texture>>,
 }
+
+/// The path of a texture, its wrapping, the bits of its offset and scale, and its tone.
+type TextureKey = (PathBuf, bool, [u64; 4], ([u64; 2], Option<Channel>));
 
 /// The origin of a material.
 #[derive(Debug)]
@@ -180,15 +185,16 @@ impl<'a> Library<'a> {
         }
         statements.unpack();
         statements.keep_one_relief();
-        let mut read = |(line, map): &(u32, Map)| {
+        let mut read = |(line, map): &(u32, Map), kind: Option<MapKind>| {
             for option in &map.ignored {
                 findings.add(FindingKind::MapOption, option, Some(*line));
             }
-            self.texture(map, folders, &mut |kind, name| findings.add(kind, name, Some(*line)))
+            let note = &mut |kind, name: &str| findings.add(kind, name, Some(*line));
+            self.texture((map, map.tone.of(kind)), folders, note)
         };
-        let texture = statements.map.as_ref().and_then(&mut read);
+        let texture = statements.map.as_ref().and_then(|map| read(map, None));
         let maps = statements.maps.iter().filter_map(|(kind, map)| {
-            let (texture, gain) = (read(map)?, map.1.gain);
+            let (texture, gain) = (read(map, Some(*kind))?, map.1.gain);
             Some((*kind, SurfaceMap { texture, gain }))
         });
         let mut maps: SurfaceMaps = maps.collect();
@@ -235,7 +241,7 @@ impl<'a> Library<'a> {
 
     fn texture(
         &mut self,
-        map: &Map,
+        (map, tone): (&Map, Tone),
         folders: [&Path; 2],
         note: &mut dyn FnMut(FindingKind, &str),
     ) -> Option<Shared<Texture>> {
@@ -249,11 +255,12 @@ impl<'a> Library<'a> {
         // Maps with equal files and layouts share a texture.
         let bits = [map.offset, map.scale].concat();
         let bits = std::array::from_fn(|i| bits[i].to_bits());
-        let key = (path.clone(), map.wrap == Wrap::Clamp, bits);
+        let key = (path.clone(), map.wrap == Wrap::Clamp, bits, tone.key());
         if let Some(texture) = self.textures.get(&key) {
             return Some(texture.clone());
         }
         let picture = self.picture(&path, note)?;
+        let picture = tone.applied(&picture).map_or(picture, Shared::new);
         let &Map { wrap, offset, scale, .. } = map;
         let texture = Shared::new(Texture { source: path, picture, wrap, offset, scale });
         self.textures.insert(key, texture.clone());
@@ -367,7 +374,11 @@ mod tests {
     fn each_nonsense_is_mended_by_its_rule_and_listed() {
         use FindingKind::*;
         type Row = (&'static str, FindingKind, fn(&FileMaterial) -> bool);
-        let rows: [Row; 15] = [
+        let rows: [Row; 16] = [
+            ("Ka 0 0 0\nKd 1 1 1\nPr 0.5\nPm 1", MendedRough, |m| {
+                // Blinn's exponent is 2 / 0.5^4 - 2 = 30.
+                (m.material.specular, m.material.exponent) == ([1.0; 3], 7.5)
+            }),
             ("Kd .5 .5 .5\nKs 0 0 0", MendedAmbient, |m| m.material.ambient == [0.1; 3]),
             ("Ka 1 1 1\nKd .5 .5 .5\nKs 0 0 0", MendedAmbient, |m| m.material.ambient == [0.1; 3]),
             ("Ka .5 0 0\nKd .5 0 0\nKs 0 0 0", MendedAmbient, |m| {
@@ -401,6 +412,19 @@ mod tests {
             assert_eq!(findings, [kind], "{text}");
             assert!(right(&material), "{text}: {material:?}");
         }
+    }
+
+    #[test]
+    fn a_metal_of_blender_mirrors_in_its_own_colour() {
+        let text = "newmtl gold\nNs 250\nKa 0.75 0.75 0.75\nKd 1 0.75 0.25\nKs 0.5 0.5 0.5\n\
+                    Ke 0 0 0\nNi 1.45\nd 1\nillum 3\n";
+        let (gold, findings) = read(&format!("# Blender 3.6.2 MTL File: 'a.blend'\n{text}"));
+        assert_eq!(findings, [FindingKind::MendedMetal]);
+        assert_eq!(gold.material.specular, [0.875, 0.6875, 0.3125]);
+        assert_eq!(gold.material.ambient, gold.material.diffuse.map(|x| 0.2 * x));
+        // Elsewhere, Ka and Ks are what they say.
+        let (other, _) = read(text);
+        assert_eq!(other.material.specular, [0.5; 3]);
     }
 
     /// Kd and Ks of all materials after bytes are scaled, and the number of materials with bytes.

@@ -17,6 +17,8 @@ pub(super) struct Statements {
     pub(super) line: u32,
     /// Whether this program has written the file: its values are meant as they are.
     pub(super) is_own: bool,
+    /// Whether Blender has written the file.
+    pub(super) is_of_blender: bool,
     pub(super) ambient: Option<[f64; 3]>,
     pub(super) diffuse: Option<[f64; 3]>,
     pub(super) specular: Option<[f64; 3]>,
@@ -39,6 +41,7 @@ pub(super) struct Statements {
 pub(super) fn read_statements(bytes: &[u8], findings: &mut Findings) -> Vec<Statements> {
     let mut list: Vec<Statements> = Vec::new();
     let is_own = is_signed(bytes);
+    let is_of_blender = bytes.starts_with(b"# Blender");
     for line in Lines::new(bytes) {
         let (keyword, _) = line.statement();
         if line.oddity == Some(Oddity::NotContinued) {
@@ -46,7 +49,8 @@ pub(super) fn read_statements(bytes: &[u8], findings: &mut Findings) -> Vec<Stat
         }
         if keyword == b"newmtl" {
             let (name, line) = (line.name(), line.number);
-            list.push(Statements { name, line, is_own, ..Statements::default() });
+            let own = Statements { name, line, is_own, is_of_blender, ..Statements::default() };
+            list.push(own);
             continue;
         }
         if keyword.starts_with(b"#") {
