@@ -53,7 +53,7 @@ pub(crate) enum MaterialValue {
         emission: [f64; 3],
         reflection: String,
         transmission: [f64; 3],
-        index: f64,
+        ior: f64,
     },
 }
 
@@ -77,19 +77,19 @@ impl MaterialValue {
                 emission,
                 reflection,
                 transmission,
-                index,
+                ior,
             } => {
                 let factors = [ambient, diffuse, specular, transmission].into_iter().flatten();
                 let all_right = factors.into_iter().all(|x| (0.0..=1.0).contains(&x))
                     && emission.into_iter().chain([exponent]).all(|x| x >= 0.0 && x.is_finite())
-                    && Optics::INDICES.contains(&index);
+                    && Optics::INDICES.contains(&ior);
                 let optics = Optics {
                     reflection: reflection_of(&reflection)?,
                     transmission: match transmission {
                         [0.0, 0.0, 0.0] => Transmission::None,
                         filter => Transmission::Filter(filter),
                     },
-                    index,
+                    index: ior,
                 };
                 let plain = Material::matte(ambient, diffuse);
                 let material = Material { specular, exponent, emission, optics, ..plain };

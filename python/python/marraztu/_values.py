@@ -54,7 +54,7 @@ def material_of(material: Any) -> Material | str | None:
         emission=triple_of(material.emission, "emission"),
         reflection=str(material.reflection),
         transmission=triple_of(material.transmission, "transmission"),
-        index=float(material.index),
+        ior=float(material.ior),
     )
 
 
@@ -87,7 +87,7 @@ class Material(NamedTuple):
     """How the surroundings are mirrored: none, constant (Ks) or fresnel."""
     transmission: Triple = (0.0, 0.0, 0.0)
     """The fraction of light that passes through the surface: Tf."""
-    index: float = 1.0
+    ior: float = 1.0
     """The index of refraction: Ni, from 0.1 to 10."""
 
     @classmethod
