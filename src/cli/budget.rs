@@ -71,17 +71,27 @@ impl Budget {
     }
 }
 
-/// Returns the options that choose settings: each choice that differs from the default or from the
-/// scene's, and the samples per pixel, which files would otherwise refine.
-fn options(settings: &Settings, scene: &Settings, fixed: &[&Axis]) -> String {
+/// Returns the options that choose settings, each with its value: each choice that differs from the
+/// default or from the scene's, and the samples per pixel, which files would otherwise refine.
+pub(super) fn chosen(
+    settings: &Settings,
+    scene: &Settings,
+    fixed: &[&Axis],
+) -> Vec<(&'static str, &'static str)> {
     let is_stated = |axis: &&Axis| {
         let word = axis.chosen(settings).word;
         let differs = word != axis.default_choice().word || word != axis.chosen(scene).word;
         let is_fixed = fixed.iter().any(|other| other.key == axis.key);
         (differs || axis.key == "samples") && !is_fixed
     };
-    let option = |axis: &Axis| format!("--{} {}", axis.key, axis.chosen(settings).word);
-    AXES.iter().filter(is_stated).map(option).collect::<Vec<_>>().join(" ")
+    let option = |axis: &'static Axis| (axis.key, axis.chosen(settings).word);
+    AXES.iter().filter(is_stated).map(option).collect()
+}
+
+/// Returns the options that choose settings, as on the command line.
+fn options(settings: &Settings, scene: &Settings, fixed: &[&Axis]) -> String {
+    let option = |(key, word)| format!("--{key} {word}");
+    chosen(settings, scene, fixed).into_iter().map(option).collect::<Vec<_>>().join(" ")
 }
 
 /// Describes an answer: "within 20 ms: 17 ms, error 1.2 of 255: --samples 4".

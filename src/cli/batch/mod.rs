@@ -63,6 +63,7 @@ use self::studio::{Studio, silence_panics};
 use self::tables::Tables;
 use self::tars::{TarNames, Tars};
 use super::arguments::choice;
+use super::budget::Budget;
 use super::cameras::{CAMERAS, Cameras, Earlier, check_cameras, part_name};
 use super::failure::{Failure, usage};
 use super::layers::NUMBER_ENDINGS;
@@ -192,6 +193,8 @@ pub(crate) struct Batch {
     #[arg(long)]
     strict_exit: bool,
     #[command(flatten)]
+    budget: Budget,
+    #[command(flatten)]
     talk: Talk,
     #[command(flatten)]
     options: OptionTexts,
@@ -199,8 +202,8 @@ pub(crate) struct Batch {
 
 /// Draws the pictures that the arguments describe.
 pub(super) fn batch(arguments: Box<Batch>) -> Result<(), Failure> {
-    let arguments: Arc<Batch> = Arc::from(arguments);
     arguments.talk.apply();
+    let arguments = Arc::new(within_budget(*arguments)?);
     let rows = Rows::of(&arguments)?;
     check_outputs(&rows, &arguments)?;
     let plan = Plan::of(&rows.rows, arguments.shard.unwrap_or(Shard::WHOLE));
@@ -244,6 +247,29 @@ pub(super) fn batch(arguments: Box<Batch>) -> Result<(), Failure> {
         note(&format_args!("{repaired} of the pictures have findings: {list} lists them"));
     }
     status(&counts, signal.load(Ordering::Relaxed), arguments.strict_exit)
+}
+
+/// Returns arguments with the settings that their budget asks for: those of the first picture, as
+/// options for all of them.
+fn within_budget(arguments: Batch) -> Result<Batch, Failure> {
+    if !arguments.budget.is_given() {
+        return Ok(arguments);
+    }
+    if is_part(&arguments) || arguments.resume {
+        return Err(usage(
+            "the settings for a budget depend on the machine, so parts would differ: draw one \
+             picture with the budget, and give all parts the options that it prints",
+        ));
+    }
+    let (rows, arguments) = (Rows::of(&arguments)?, Arc::new(arguments));
+    let studio = Studio::new(Plan::of(&rows.rows, Shard::WHOLE), Arc::clone(&arguments));
+    let chosen = studio.within_budget(&arguments.budget)?;
+    drop((studio, rows));
+    let mut arguments = Arc::try_unwrap(arguments).expect("the studio is gone");
+    for (axis, choice) in chosen {
+        arguments.options = arguments.options.and(axis, choice);
+    }
+    Ok(arguments)
 }
 
 /// The results of a batch, as they come.

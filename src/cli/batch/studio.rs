@@ -31,6 +31,8 @@ use super::jobs::{Job, Plan};
 use super::outcome::{Fault, Outcome, Spent};
 use super::rows::Row;
 use super::tars::EarlierTars;
+use crate::cli::budget::{Budget, chosen};
+use crate::cli::failure::Failure;
 
 /// Pictures with more pixels are drawn by all threads.
 const LARGE: usize = 1 << 20;
@@ -158,6 +160,29 @@ impl Studio {
             Err(Fault::Program(panic))
         });
         Rehearsed { bytes, spent: attempt.spent, is_large: self.is_large(job.size()) }
+    }
+
+    /// Finds settings for the first picture that can be read, drawn as the batch draws it. Returns
+    /// the options that choose them, each with its value.
+    pub(super) fn within_budget(
+        &self,
+        budget: &Budget,
+    ) -> Result<Vec<(&'static str, &'static str)>, Failure> {
+        let read = |job: Job| {
+            let spent = Spent::default();
+            let mut attempt = Attempt { studio: self, job: &job, until: None, source: None, spent };
+            let stage = attempt.stage().ok()?.0;
+            Some((job, stage))
+        };
+        let Some((job, stage)) = self.plan.jobs().find_map(read) else { return Ok(Vec::new()) };
+        let (shot, accuracy) = (stage.shot(job.size()), &job.options().accuracy);
+        let search = || budget.settings(&shot, accuracy);
+        let alone = || threads::pool(1, Caller::Waits, "search").ok();
+        let settings = match (!self.is_large(job.size())).then(alone).flatten() {
+            Some(pool) => pool.install(search),
+            None => search(),
+        };
+        Ok(chosen(&settings?, &shot.settings, &accuracy.fixed()))
     }
 
     /// Removes the files of an earlier run for a picture of a data set that could not be drawn: its

@@ -224,7 +224,7 @@ impl Attempt<'_> {
     }
 
     /// Returns the scene with its camera, and the findings.
-    fn stage(&mut self) -> Result<(Stage, Vec<String>), Fault> {
+    pub(super) fn stage(&mut self) -> Result<(Stage, Vec<String>), Fault> {
         let begin = Instant::now();
         let (row, job) = (&self.job.row, self.job);
         let loaded = self.studio.scene(row, self.until);
