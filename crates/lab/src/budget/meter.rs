@@ -12,15 +12,18 @@ use crate::estimate::Estimate;
 use crate::flip::Perceived;
 use crate::picture_source::{PictureSource, cropped};
 use crate::strata::Strata;
-use crate::timing::{Clock, Work};
+use crate::timing::{Clock, Work, time};
 use marraztu_core::accuracy::{AXES, Samples, Settings, Shot};
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_render::Renderer;
 use marraztu_render::screen::coverage::PixelBox;
 
-/// The side of a window in pixels. FLIP looks further than a window, so its windows are larger.
+/// The side of a window in pixels, and of one that would take longer than [`LONG`]. FLIP looks
+/// further than a window, so its windows are larger.
 const SIDE: usize = 16;
+const SLOW_SIDE: usize = 8;
 const FLIP_SIDE: usize = 32;
+const LONG: Duration = Duration::from_millis(60);
 
 /// The windows that are drawn between two pictures.
 const BATCH: usize = 8;
@@ -106,7 +109,10 @@ impl<'a> Meter<'a> {
             source.picture().clone()
         };
         let guides: Vec<Picture> = guides.iter().map(draw).collect();
-        let side = if is_perceived { FLIP_SIDE } else { SIDE };
+        let side = match is_perceived {
+            true => FLIP_SIDE,
+            false => side(source, &shot.settings.ideal(), shot.size),
+        };
         let windows: Vec<PixelBox> = windows(shot.size, side).collect();
         let details = details(&guides.iter().collect::<Vec<_>>(), &windows);
         let strata = Strata::new(&details, 1);
@@ -306,6 +312,24 @@ impl<'a> Meter<'a> {
     pub(super) fn now(&self) -> Duration {
         self.clock.now()
     }
+}
+
+/// Returns the side of windows of the ideal, after drawing one in the middle: where each pixel
+/// takes long, small windows tell more in the same time.
+fn side(source: &mut dyn PictureSource, ideal: &Settings, size: Size) -> usize {
+    let at = |side: usize| (side / 2).saturating_sub(SLOW_SIDE / 2);
+    let (left, top) = (at(size.width), at(size.height));
+    let to = |side: usize| i32::try_from(side).unwrap_or(i32::MAX);
+    let window = PixelBox {
+        left: to(left),
+        top: to(top),
+        right: to((left + SLOW_SIDE).min(size.width)),
+        bottom: to((top + SLOW_SIDE).min(size.height)),
+    };
+    let took = time(|| _ = source.ideal_window(ideal, window));
+    let times = (SIDE * SIDE).div_ceil(SLOW_SIDE * SLOW_SIDE);
+    let is_long = took * u32::try_from(times).unwrap_or(u32::MAX) > LONG;
+    if is_long { SLOW_SIDE } else { SIDE }
 }
 
 /// The time for windows before settings are drawn again.
