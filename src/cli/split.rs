@@ -38,7 +38,8 @@ impl Split {
 pub(crate) fn split(text: &str) -> Result<Split, String> {
     let wrong = || "three shares of at least 0, for train, val and test: \"80,10,10\"".to_owned();
     let shares: Option<Vec<f64>> = text.split(',').map(|share| share.trim().parse().ok()).collect();
-    let shares = <[f64; 3]>::try_from(shares.unwrap_or_default()).map_err(|_| wrong())?;
+    let shares =
+        <[f64; 3]>::try_from(shares.unwrap_or_default()).map_err(|_other_count| wrong())?;
     let sum: f64 = shares.iter().sum();
     let is_right = shares.iter().all(|share| *share >= 0.0) && sum > 0.0 && sum.is_finite();
     if !is_right {

@@ -220,7 +220,7 @@ mod tests {
             for round in 0..300 {
                 let meshes: Vec<Mesh> = (0..1 + rng.index(12)).map(|_| soup(&mut rng)).collect();
                 let place = |rng: &mut Rng| {
-                    let axis = (rng.vector(1.0) + DVec3::splat(1e-3)).normalize();
+                    let axis = (rng.vector(1.0) + DVec3::splat(1e-3)).normalize_or(DVec3::X);
                     let turn = DMat4::from_axis_angle(axis, rng.real(0.0, 6.0));
                     let scale = DMat4::from_scale(rng.vector(1.0) + DVec3::splat(1.5));
                     DMat4::from_translation(rng.vector(20.0)) * turn * scale
@@ -243,7 +243,7 @@ mod tests {
                     empty += usize::from(frontier.is_empty());
                     for from in &points {
                         let way = centre + rng.vector(radius / 1.8) - *from;
-                        let (towards, distance) = (way.normalize(), way.length());
+                        let (towards, distance) = (way.normalize_or_zero(), way.length());
                         let ray = Ray { from: *from, towards, own: None };
                         let all = things.stop(simd, (&ray, distance), &stops, &mut stack);
                         let within = (&ray, distance, &frontier);
