@@ -434,6 +434,29 @@ impl Scene {
         self.set_view(|view| (view.fill, view.edges_over_fill) = (fill, over))
     }
 
+    /// Saves the scene in its default view.
+    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        work(py, 0, |_| {
+            let (scene, view, settings) = {
+                let mut state = self.lock()?;
+                (state.presented()?, state.view.clone(), state.settings)
+            };
+            // The names of arrays may be those of our own models.
+            let is_of_arrays = |object: &&Object| {
+                let model = &object.model;
+                let own = || io::own_model(&model.name);
+                model.source.is_none() && own().is_some_and(|own| own.mesh != model.mesh)
+            };
+            if let Some((_, object)) = scene.objects.iter().find(|(_, object)| is_of_arrays(object))
+            {
+                let name = &object.model.name;
+                let reason = format!("the model {name:?} was not loaded from a file");
+                return Err(Failure::Save(reason));
+            }
+            Ok(io::save(&path, &scene, &view, &settings)?)
+        })
+    }
+
     /// Returns a snapshot of the scene with everything that a picture depends on.
     fn shot(
         &self,

@@ -197,6 +197,27 @@ def test_a_camera_looks_with_its_own_lens_whatever_the_scene_file_says(tmp_path)
     assert np.array_equal(pictures("projection: Orthographic")[0], posed)
 
 
+def test_a_saved_scene_has_the_same_picture(tmp_path):
+    (tmp_path / "roof.obj").write_text("v 0 0 0\nv 2 0 0\nv 1 1 -1\nv 1 0 2\nf 1 4 3\nf 4 2 3\n")
+    scene = mz.Scene([mz.Mesh.load(tmp_path / "roof.obj")], background="#203040")
+    pose = np.eye(4)
+    pose[:3, 3] = (0, 1, 0)
+    scene.add(scene.nodes[0].mesh, pose=pose, material="gold", opacity=0.5)
+    before = scene.render(64, 48).rgba.copy()
+    path = tmp_path / "roofs.marraztu"
+    scene.save(path)
+    assert np.array_equal(mz.Scene.load(path).render(64, 48).rgba, before)
+    content = path.read_bytes()
+    # Arrays are in no file, whatever their name.
+    for name in ("mesh", "sphere"):
+        arrays = mz.Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)], name=name)
+        with pytest.raises(OSError, match="was not loaded from a file"):
+            mz.Scene([arrays]).save(path)
+    assert path.read_bytes() == content
+    with pytest.raises(ValueError, match="choose one in"):
+        scene.save(tmp_path / "roofs.obj")
+
+
 def test_automatic_lights_of_a_scene_file_are_those_of_models(tmp_path):
     path = tmp_path / "a.marraztu"
     path.write_text(

@@ -162,6 +162,16 @@ class Scene:
         warn_of(scene.findings)
         return scene
 
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Saves the scene as a file of the editor (.marraztu), with its default view and lights.
+
+        The file names the files of the meshes and textures, so each needs one: meshes of arrays
+        raise `OSError`, and the file stays as it was.
+        """
+        if not os.fspath(path).lower().endswith(".marraztu"):
+            raise ValueError(f"{path} is not the name of a scene: choose one in .marraztu")
+        self._scene.save(os.fspath(path))
+
     @property
     def unit(self) -> float:
         """The factor of the layers depth, distance and position: metres per unit of the models.
