@@ -15,9 +15,10 @@ use super::shadows::{first, lit};
 use crate::frame::draw::Stage;
 use crate::lights::{Batch, LightTerm};
 use crate::shadow::ball_light::LightSample;
+use crate::shadow::extents::{Sky, SkyAbove};
 use crate::shadow::rays::RayScratch;
 use crate::shadow::shaft::POINTS;
-use crate::shadow::tracer::{Sky, SkyAbove, Tracer};
+use crate::shadow::tracer::Tracer;
 use crate::simd::Bits;
 
 /// Adds the light of the sky at every position of a batch.

@@ -12,9 +12,10 @@ use super::shadows::{Firsts, first, lit};
 use crate::frame::draw::Stage;
 use crate::lights::{Batch, LightTerm};
 use crate::shadow::ball_light::{LightSample, SeenBall};
+use crate::shadow::extents::SoftLight;
 use crate::shadow::rays::RayScratch;
 use crate::shadow::shaft::POINTS;
-use crate::shadow::tracer::{SoftLight, Tracer};
+use crate::shadow::tracer::Tracer;
 use crate::simd::Bits;
 
 /// Adds the light of a ball at every position of a batch that it reaches.

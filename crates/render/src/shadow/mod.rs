@@ -24,8 +24,9 @@
 //!
 //! The results are cached from frame to frame ([`known`]).
 //!
-//! Lights with an extent are balls ([`ball_light`]), sampled by a sequence of points ([`sequence`])
-//! that differs from point to point. Their rays have no end in common, and are traced one by one.
+//! Lights with an extent ([`extents`]) are balls ([`ball_light`]) or the sky, sampled by a sequence
+//! of points ([`sequence`]) that differs from point to point. Their rays have no end in common, and
+//! are traced one by one; those to a ball among what lies between it and the points of a block.
 //!
 //! If the settings ask for shadow maps ([`maps`]), these are read at the same points instead of
 //! tracing rays.
@@ -35,6 +36,7 @@
 
 pub(crate) mod ball_light;
 pub(crate) mod boxes;
+pub(crate) mod extents;
 pub(crate) mod known;
 mod map_bias;
 mod map_draws;

@@ -6,15 +6,15 @@ use crate::accel::Accelerated as _;
 use fearless_simd::{Level, Simd};
 use glam::{DMat3, DMat4, DVec3};
 
-use super::ball_light::{BallLight, LightSample, SeenBall};
+use super::ball_light::{BallLight, LightSample};
 use super::boxes::world_pad;
+use super::extents::{Sky, SkyAbove, SoftLight};
 use super::known::{KnownLight, KnownShadows};
 use super::map_face::LightMap;
 use super::maps::ShadowMaps;
 use super::patches::Patch;
 use super::prepared_block::PreparedBlock;
 use super::rays::{Origins, RayCount, RayScratch};
-use super::sequence::{sample as sequence_sample, seed_of};
 use super::shaft::{Around, POINTS, Shaft};
 use super::triangle::{Prepared, is_between, reaches_behind};
 use crate::accel::{BVH_BLOCK, Bvh, BvhBlock, BvhChild, BvhNode};
@@ -56,68 +56,6 @@ pub(crate) struct Tracer<'a> {
     /// Each light, if it is a sky.
     skies: Vec<Option<Sky>>,
     view_from_world: DMat3,
-}
-
-/// A sky that surfaces hide from each other.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Sky {
-    /// The colours above the horizon and below it.
-    colors: [[f64; 3]; 2],
-    /// The number of the light.
-    light: u32,
-    /// The number of samples at each point.
-    pub(crate) samples: u32,
-}
-
-impl Sky {
-    /// Returns the colour in a direction.
-    pub(crate) fn color(&self, towards: DVec3) -> [f64; 3] {
-        self.colors[usize::from(towards.y < 0.0)]
-    }
-}
-
-/// The sky above a point, whose directions are sampled.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct SkyAbove {
-    normal: DVec3,
-    right: DVec3,
-    up: DVec3,
-    seed: u32,
-}
-
-impl SkyAbove {
-    /// Returns a direction: the more frequent, the closer it is to the normal, in proportion to the
-    /// cosine.
-    pub(crate) fn sample(&self, number: u32) -> LightSample {
-        let Self { normal, right, up, seed } = *self;
-        let [u, v] = sequence_sample(number, seed);
-        let (sin, cos) = libm::sincos(v * std::f64::consts::TAU);
-        let across = u.sqrt();
-        let towards = normal * (1.0 - u).sqrt() + right * (across * cos) + up * (across * sin);
-        LightSample { towards, distance: f64::INFINITY, shift: DVec3::ZERO }
-    }
-}
-
-/// A light with an extent.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct SoftLight {
-    ball: BallLight,
-    /// The number of the light.
-    light: u32,
-    /// The number of samples at each point.
-    pub(crate) samples: u32,
-}
-
-impl SoftLight {
-    /// Returns the light as it is seen from a point, with the seed of its samples there.
-    pub(crate) fn seen_from(&self, point: DVec3) -> Option<(SeenBall, u32)> {
-        Some((self.ball.seen_from(point)?, seed_of(point, self.light)))
-    }
-
-    /// Returns a sample of the light.
-    pub(crate) fn sample(&(ball, seed): &(SeenBall, u32), number: u32) -> LightSample {
-        ball.sample(sequence_sample(number, seed))
-    }
 }
 
 /// A caster with its transforms and bounds.
@@ -247,8 +185,7 @@ impl<'a> Tracer<'a> {
     pub(crate) fn sky_above(&self, sky: &Sky, point: DVec3, normal: DVec3) -> Option<SkyAbove> {
         // The view transform turns and scales evenly.
         let normal = unit(self.view_from_world.transpose() * normal)?;
-        let (right, up) = normal.any_orthonormal_pair();
-        Some(SkyAbove { normal, right, up, seed: seed_of(point, sky.light) })
+        Some(sky.above(point, normal))
     }
 
     /// Transforms a vector to view space.
