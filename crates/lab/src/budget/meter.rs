@@ -32,6 +32,9 @@ const BATCH: usize = 8;
 const DRAWS: usize = 4;
 const QUICK: f64 = 20.0;
 
+/// The milliseconds of a picture that takes long.
+const SLOW: f64 = 300.0;
+
 /// The milliseconds spent on making a time certain, and the fewest times that a picture is drawn.
 const STEADYING: f64 = 400.0;
 const LEAST_DRAWS: usize = 3;
@@ -142,7 +145,9 @@ impl<'a> Meter<'a> {
         // A choice may build mipmaps or trees that later pictures reuse.
         let choices = AXES.iter().map(|axis| (axis.key, axis.chosen(settings).word));
         let fresh: Vec<_> = choices.filter(|choice| !self.seen.contains(choice)).collect();
-        if !fresh.is_empty() {
+        // What is built once hardly counts among pictures that take long.
+        let is_slow = self.known.iter().any(|known| known.measured().ms.value > SLOW);
+        if !fresh.is_empty() && !is_slow {
             self.seen.extend(fresh);
             self.source.draw(&Settings { samples: Samples::One, ..*settings });
         }
