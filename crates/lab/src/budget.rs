@@ -167,6 +167,9 @@ fn guides(shot: &Shot, free: &[FreeAxis]) -> Vec<Settings> {
     all
 }
 
+/// How many times as long as the default the most exact choices take at least.
+const EXACT_TAKES: f64 = 3.0;
+
 struct Search<'a> {
     meter: Meter<'a>,
     shot: &'a Shot,
@@ -211,6 +214,9 @@ impl Search<'_> {
         let samples = Samples::ALL.into_iter().filter(|it| *it != Samples::TwoFiftySix);
         let samples: Vec<Samples> = samples.collect();
         for line in lines.into_iter().flatten() {
+            if Some(line) == exact && !self.may_afford_exact() {
+                continue;
+            }
             for samples in &samples {
                 let settings = Settings { samples: *samples, ..line };
                 let measured = self.meter.measure(&merged(shot, &self.free, &settings));
@@ -225,6 +231,16 @@ impl Search<'_> {
                     break;
                 }
             }
+        }
+    }
+
+    /// Returns whether the most exact choices together, which take several times as long as those
+    /// of the default, can be of use.
+    fn may_afford_exact(&self) -> bool {
+        let best = self.best();
+        match self.goal {
+            Goal::Within(most) => best.ms.value * EXACT_TAKES <= most,
+            Goal::Error(_) | Goal::Unseen => !self.is_kept(&best),
         }
     }
 
@@ -284,8 +300,10 @@ impl Search<'_> {
 
     /// Draws the contenders again and again, with more windows, and drops half of them each time.
     fn halve(&mut self) {
-        let mut rest = self.ranked();
+        let (mut rest, best) = (self.ranked(), self.best());
         rest.truncate(CONTENDERS);
+        // Far slower ones would take most of the time, and win nothing.
+        rest.retain(|it| !self.is_kept(&best) || it.ms.value <= SLOW * best.ms.value);
         while rest.len() > 1 {
             self.meter.look_for(ROUND);
             rest = rest.iter().map(|it| self.meter.again(&it.settings)).collect();
