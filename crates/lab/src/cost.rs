@@ -20,9 +20,14 @@ use marraztu_render::explain_frame;
 use marraztu_render::plan_frame;
 use marraztu_render::{Effect, EffectUse, FramePlan, Renderer};
 
-/// The fewest pairs per effect, and the fewest if frames take long.
+/// The fewest pairs per effect, unless frames take long.
 const PAIRS: usize = 7;
-const SLOW_PAIRS: usize = 2;
+
+/// The noise of frames that take long, as a part of their time: one pair shows none.
+const SLOW_NOISE: f64 = 0.05;
+
+/// The time for which frames are drawn before they are measured.
+const WARM: Duration = Duration::from_millis(30);
 
 /// The most pairs per effect.
 const MOST_PAIRS: usize = 31;
@@ -176,26 +181,30 @@ pub fn measure(shot: &Shot, budget: Duration, stopped: impl Fn() -> bool) -> Cos
     let share = budget / u32::try_from(without.len() + 1).unwrap_or(u32::MAX);
 
     // Warm up caches and memory before the control measurement.
-    let mut bench = Bench::default();
-    for _ in 0..3 {
+    let (mut bench, begun) = (Bench::default(), Instant::now());
+    bench.time(&plan);
+    while begun.elapsed() < WARM && !stopped() {
         bench.time(&plan);
     }
-    let picture = bench.renderer.render(&plan).clone();
+    let picture = bench.renderer.picture().clone();
     let perceived = Perceived::new(&picture);
     let control = bench.pairs(&plan, &plan, share, &stopped);
-    let mut costs =
-        Costs { frame: control.frame, noise: noise(&control.difference), effects: Vec::new() };
+    let least = if control.count < PAIRS { control.frame * SLOW_NOISE } else { 0.0 };
+    let noise = noise(&control.difference).max(least);
+    let mut costs = Costs { frame: control.frame, noise, effects: Vec::new() };
     for (effect, without) in &without {
         if stopped() {
             break;
         }
-        let difference = bench.pairs(&plan, without, share, &stopped).difference;
-        let (milliseconds, spread) = (difference.median, difference.spread());
-        let other = bench.renderer.render(without);
+        // The first frame allocates memory, so its time does not count.
+        bench.time(without);
+        let other = bench.renderer.picture();
         let rmse = rmse(&picture, other);
         // The same bytes need no filters.
         let flip = if rmse > 0.0 { perceived.largest_of_all(&Perceived::new(other)) } else { 0.0 };
         let missed = Missed { rmse, flip };
+        let difference = bench.pairs(&plan, without, share, &stopped).difference;
+        let (milliseconds, spread) = (difference.median, difference.spread());
         costs.effects.push(Cost { effect: *effect, milliseconds, spread, missed });
     }
     costs
@@ -210,6 +219,8 @@ struct Bench {
 struct Pairs {
     frame: f64,
     difference: Quartiles,
+    /// The number of pairs.
+    count: usize,
 }
 
 impl Bench {
@@ -230,11 +241,9 @@ impl Bench {
     ) -> Pairs {
         let begun = Instant::now();
         let (mut frames, mut differences) = (Vec::new(), Vec::new());
-        // The first frame allocates memory, so it is not counted.
-        self.time(without);
         let goes_on = |pairs: usize| {
             let spent = begun.elapsed();
-            spent < share || pairs < SLOW_PAIRS || (pairs < PAIRS && spent < share * 3)
+            spent < share || pairs == 0 || (pairs < PAIRS && spent < share * 3)
         };
         while differences.len() < MOST_PAIRS && goes_on(differences.len()) && !stopped() {
             // Alternate the order within pairs, so that neither plan always comes first.
@@ -250,9 +259,10 @@ impl Bench {
         }
         // Without a complete pair, nothing was measured.
         let none = Quartiles { lower: 0.0, median: 0.0, upper: 0.0 };
+        let count = differences.len();
         let [frame, difference] =
             [frames, differences].map(|all| Quartiles::of(&all).unwrap_or(none));
-        Pairs { frame: frame.median, difference }
+        Pairs { frame: frame.median, difference, count }
     }
 }
 
