@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use marraztu::plots::{self, Look, PagePicture};
+use marraztu::plots::{self, FrontPicture, Look, PagePicture};
 use marraztu_core::accuracy::{AXES, AccuracyPreset, Axis, Settings};
 use marraztu_core::base::image::Size;
 use marraztu_io::{self as io, PictureFormat};
@@ -48,8 +48,8 @@ pub(crate) struct Lab {
     /// The folder for tables, plots and pictures; created if it does not exist
     #[arg(short, long, value_name = "FOLDER")]
     out: Option<PathBuf>,
-    /// Also write one self-contained page: the verdict, the plots, a slider between pictures, the
-    /// table, the machine and the command
+    /// Also write one self-contained page: the verdict, a line from quick to exact that one drags,
+    /// a slider between pictures, the plots, the table, the machine and the command
     #[arg(long, value_name = "FILE", conflicts_with_all = ["suite", "pixel"])]
     html: Option<PathBuf>,
     /// Width and height in pixels; one number for a square [default: 800x800; suite: 1280x720]
@@ -293,7 +293,7 @@ fn save(
     Ok(())
 }
 
-/// Writes the measurement as one page, with a picture of each preset.
+/// Writes the measurement as one page, with a picture of each preset and of each point of the front.
 fn write_page(
     path: &Path,
     report: &Report,
@@ -301,6 +301,17 @@ fn write_page(
     settings: &Settings,
 ) -> Result<(), Failure> {
     let png = PictureFormat::of(Path::new("page.png")).map_err(Failure::Absent)?;
+    // Each picture is drawn once.
+    let mut drawn: Vec<(Settings, Vec<u8>)> = Vec::new();
+    let mut encoded = |settings: &Settings| {
+        if let Some((_, png)) = drawn.iter().find(|(other, _)| other == settings) {
+            return Ok(png.clone());
+        }
+        studio.draw(settings);
+        let png = png.encode(studio.picture()).map_err(Failure::Absent)?;
+        drawn.push((*settings, png.clone()));
+        Ok::<_, Failure>(png)
+    };
     let mut pictures = Vec::new();
     for preset in AccuracyPreset::dial() {
         let settings = preset.of(settings);
@@ -309,9 +320,15 @@ fn write_page(
             let error = point.ideal.map_or(0.0, |error| error.whole.rmse);
             format!("{} ms, error {}", report::brief(point.ms), report::brief(error))
         });
-        studio.draw(&settings);
-        let png = png.encode(studio.picture()).map_err(Failure::Absent)?;
+        let png = encoded(&settings)?;
         pictures.push(PagePicture { name: preset.label.to_owned(), figures, png });
+    }
+    let mut front = Vec::new();
+    for point in report.front().into_iter().map(|place| &report.findings.points[place]) {
+        let error = point.ideal.map_or(0.0, |error| error.whole.rmse);
+        let (name, figures) = (point.settings.in_words(), String::new());
+        let picture = PagePicture { name, figures, png: encoded(&point.settings)? };
+        front.push(FrontPicture { ms: point.ms, error, picture });
     }
     let findings = &report.findings;
     let machine = format!(
@@ -322,7 +339,7 @@ fn write_page(
         findings.threads,
         findings.instructions
     );
-    let text = plots::report_page(report, &pictures, &machine)?;
+    let text = plots::report_page(report, (&front, &pictures), &machine)?;
     Ok(page::write_page(path, &text)?)
 }
 

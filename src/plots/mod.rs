@@ -5,6 +5,7 @@
 //! the same scales.
 
 mod contact_sheet;
+mod drag;
 mod page;
 mod picture_pages;
 mod report_page;
@@ -18,6 +19,7 @@ use marraztu_core::base::image::{Picture, Size};
 use marraztu_lab::report::{Panel, PanelMark, Panels, Report, Scale, TextBox, place};
 
 pub use contact_sheet::{SheetCell, contact_sheet};
+pub use drag::FrontPicture;
 pub use page::{page_html, page_markdown, plot_name, sections};
 pub use picture_pages::{PageCell, compare_page, sheet_page};
 pub use report_page::{PagePicture, report_page};

@@ -1,11 +1,12 @@
-//! Writes one measurement as a single self-contained page: the verdict, the plots, a slider between
-//! pictures, the table, the machine and the command. A teacher can put it on a website as it is.
+//! Writes one measurement as a single self-contained page: the verdict, the front that one drags, a
+//! slider between pictures, the plots, the table, the machine and the command. A teacher can put it on a website as it is.
 
 use std::fmt::Write as _;
 
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 
+use super::drag::{FrontPicture, drag};
 use super::page::{escaped, head};
 use super::{Look, PlotError, svg};
 use marraztu_lab::report::{Report, brief, heading};
@@ -22,14 +23,14 @@ pub struct PagePicture {
     pub png: Vec<u8>,
 }
 
-/// Writes the page. The last picture is the one that others are compared with; `machine` describes
-/// the computer.
+/// Writes the page. `front` goes from the quickest picture to the most exact one. The last of the
+/// pictures is the one that others are compared with; `machine` describes the computer.
 ///
 /// # Errors
 /// If a plot cannot be drawn.
 pub fn report_page(
     report: &Report,
-    pictures: &[PagePicture],
+    (front, pictures): (&[FrontPicture], &[PagePicture]),
     machine: &str,
 ) -> Result<String, PlotError> {
     let title = format!("What accuracy costs: {}", report.scene);
@@ -37,6 +38,7 @@ pub fn report_page(
     for sentence in report.verdict() {
         let _ = writeln!(text, "<p>{}</p>", escaped(&sentence));
     }
+    text += &drag(front);
     text += &slider(pictures);
     let [light, dark] = [Look::Light, Look::Dark].map(|look| svg(report, look));
     let _ = writeln!(
