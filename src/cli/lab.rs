@@ -293,7 +293,8 @@ fn save(
     Ok(())
 }
 
-/// Writes the measurement as one page, with a picture of each preset and of each point of the front.
+/// Writes the measurement as one page, with a picture of each preset and of each point of the
+/// front.
 fn write_page(
     path: &Path,
     report: &Report,

@@ -41,7 +41,8 @@ pub(super) fn drag(front: &[FrontPicture]) -> String {
     for ([x, y], point) in places.iter().zip(front) {
         let _ = write!(
             plot,
-            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\" fill=\"#0072b2\"><title>{}</title></circle>",
+            "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\" fill=\"#0072b2\">\
+             <title>{}</title></circle>",
             escaped(&point.picture.name)
         );
     }

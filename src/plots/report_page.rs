@@ -1,5 +1,6 @@
 //! Writes one measurement as a single self-contained page: the verdict, the front that one drags, a
-//! slider between pictures, the plots, the table, the machine and the command. A teacher can put it on a website as it is.
+//! slider between pictures, the plots, the table, the machine and the command. A teacher can put it
+//! on a website as it is.
 
 use std::fmt::Write as _;
 
