@@ -164,6 +164,25 @@ fn samples_of_a_pixel_that_are_lit_one_by_one_share_the_samples_of_a_light() {
 }
 
 #[test]
+fn pictures_count_the_rays_of_all_of_their_samples() {
+    let (mut scene, view) = screen();
+    light(&mut scene, sun(DVec3::new(1.0, 0.0, 2.0)), 2.0);
+    let rays = |scene: &Scene, samples, light| {
+        let settings = Settings { samples, light, ..Settings::default() };
+        let mut renderer = Renderer::default();
+        renderer.render(&plan_frame(&Shot::new(scene, &view, &settings, Size::new(32, 32))));
+        renderer.rays().traced
+    };
+    let one = rays(&scene, Samples::One, LightAt::Pixel);
+    assert!(one > 0);
+    // Each sample has sixteen samples of the light, like a pixel of its own.
+    let four = rays(&scene, Samples::Four, LightAt::Sample) as f64 / one as f64;
+    assert!((3.0..5.0).contains(&four), "{four}");
+    let ideal = rays(&scene, Samples::TwoFiftySix, LightAt::Sample) as f64 / one as f64;
+    assert!((190.0..320.0).contains(&ideal), "{ideal}");
+}
+
+#[test]
 fn points_hard_methods_and_lights_without_shadows_ignore_the_size() {
     let opened = io::lesson_scene("soft").unwrap();
     let mut hard = opened.scene.clone();

@@ -92,6 +92,7 @@ impl Renderer {
             }
             // If cancelled, the remaining windows stay as they are.
             let Ok(colors) = larger.averaged(plan, window, &|| watch.goes_on()) else { break };
+            self.rays += larger.rays();
             let within = [window.left, window.top - top];
             copy(&colors, window, within, self.picture.pixels_mut(), plan.size.width);
             (0..count).for_each(|_| watch.tile_is_painted());

@@ -34,7 +34,7 @@ pub(super) fn add_soft_light<T: ShadingNumber>(
     for (i, ball) in balls[..count].iter_mut().enumerate() {
         *ball = light.seen_from(scratch.origins.point(i));
     }
-    // Most points see a light as a whole.
+    // Rays search only what lies in between.
     let is_hidden = tracer.look_between(level, &light, scratch, count);
     let mut samples: [Option<LightSample>; POINTS] = [None; POINTS];
     for number in 0..light.samples {
