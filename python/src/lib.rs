@@ -11,6 +11,7 @@ mod mesh;
 mod pictures;
 mod scene;
 mod shot;
+mod text;
 mod threads;
 mod values;
 

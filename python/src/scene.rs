@@ -22,6 +22,7 @@ use pyo3::prelude::*;
 use crate::errors::Failure;
 use crate::mesh::Mesh;
 use crate::shot::Shot;
+use crate::text::{self, SceneText};
 use crate::threads::{check_fork, work, work_while};
 use crate::values::{self, LightValue, MaterialValue, Rows, item};
 
@@ -441,19 +442,27 @@ impl Scene {
                 let mut state = self.lock()?;
                 (state.presented()?, state.view.clone(), state.settings)
             };
-            // The names of arrays may be those of our own models.
-            let is_of_arrays = |object: &&Object| {
-                let model = &object.model;
-                let own = || io::own_model(&model.name);
-                model.source.is_none() && own().is_some_and(|own| own.mesh != model.mesh)
-            };
-            if let Some((_, object)) = scene.objects.iter().find(|(_, object)| is_of_arrays(object))
-            {
-                let name = &object.model.name;
-                let reason = format!("the model {name:?} was not loaded from a file");
-                return Err(Failure::Save(reason));
-            }
+            text::check_files(&scene).map_err(Failure::Save)?;
             Ok(io::save(&path, &scene, &view, &settings)?)
+        })
+    }
+
+    /// Returns the scene for another process, and whether its lights are automatic, and its view
+    /// that of a file.
+    fn dump(&self, py: Python<'_>) -> PyResult<(SceneText, bool, bool)> {
+        work(py, 1, |_| {
+            let State { scene, view, settings, is_lit, is_file, ids, .. } = self.lock()?.clone();
+            Ok((text::write((&scene, &view, &settings), &ids)?, is_lit, is_file))
+        })
+    }
+
+    /// Returns the scene of another process.
+    #[staticmethod]
+    fn restore(py: Python<'_>, text: SceneText, is_lit: bool, is_file: bool) -> PyResult<Self> {
+        work(py, 0, |_| {
+            let (scene, view, settings, ids) = text::read(text)?;
+            let state = State { scene, view, settings, is_lit, is_file, ids, ..State::empty() };
+            Ok(Self { state: Mutex::new(state) })
         })
     }
 

@@ -16,6 +16,7 @@ use pyo3::types::PyDict;
 
 use crate::errors::Failure;
 use crate::pictures;
+use crate::text::{self, SceneText};
 use crate::threads::{work, work_while};
 use crate::values::{self, Rows};
 
@@ -121,6 +122,23 @@ fn layer_set(names: &[String]) -> Result<(bool, LayerSet), Failure> {
 
 #[pymethods]
 impl Shot {
+    /// Returns the shot for another process: the scene and the size.
+    fn dump(&self, py: Python<'_>) -> PyResult<(SceneText, (usize, usize))> {
+        let accuracy::Shot { scene, view, settings, size } = &self.shot;
+        let text = work(py, 1, |_| text::write((scene, view, settings), &self.ids))?;
+        Ok((text, (size.width, size.height)))
+    }
+
+    /// Returns the shot of another process.
+    #[staticmethod]
+    fn restore(py: Python<'_>, text: SceneText, size: (usize, usize)) -> PyResult<Self> {
+        work(py, 0, |_| {
+            let (scene, view, settings, ids) = text::read(text)?;
+            let size = Size::new(size.0, size.1);
+            Ok(Self::new(accuracy::Shot::new(&scene, &view, &settings, size), ids))
+        })
+    }
+
     #[getter]
     fn size(&self) -> (usize, usize) {
         let Size { width, height } = self.shot.size;

@@ -1,6 +1,7 @@
 """Scenes, nodes, lights and cameras."""
 
 import math
+import pickle
 
 import marraztu as mz
 import numpy as np
@@ -216,6 +217,33 @@ def test_a_saved_scene_has_the_same_picture(tmp_path):
     assert path.read_bytes() == content
     with pytest.raises(ValueError, match="choose one in"):
         scene.save(tmp_path / "roofs.obj")
+
+
+def test_scenes_meshes_and_shots_of_files_are_pickled(tmp_path):
+    (tmp_path / "roof.obj").write_text("v 0 0 0\nv 2 0 0\nv 1 1 -1\nv 1 0 2\nf 1 4 3\nf 4 2 3\n")
+    mesh = mz.Mesh.load(tmp_path / "roof.obj", scale=2, up="z")
+    scene = mz.Scene([mesh], background="#203040", unit=0.5)
+    scene.add(mesh, id=7, material="ruby").visible = False
+    layers = ("color", "depth", "object")
+    shot = scene.shot(64, 48, layers=layers, samples="4")
+    before = shot.render()
+    again = pickle.loads(pickle.dumps(scene))
+    assert [node.id for node in again.nodes] == [1, 7] and again.unit == 0.5
+    for picture in (
+        again.render(64, 48, layers=layers, samples="4"),
+        pickle.loads(pickle.dumps(shot)).render(),
+        pickle.loads(pickle.dumps(before)),
+    ):
+        for layer in ("rgba", "depth", "object"):
+            assert np.array_equal(getattr(picture, layer), getattr(before, layer)), layer
+    # Automatic lights stay automatic.
+    again.add(pickle.loads(pickle.dumps(mesh)), pose=np.diag((9.0, 9, 9, 1)))
+    scene.add(mesh, pose=np.diag((9.0, 9, 9, 1)))
+    assert np.array_equal(again.render(32, 32).rgba, scene.render(32, 32).rgba)
+    arrays = mz.Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)], name="sphere")
+    for it in (arrays, mz.Scene([arrays]), mz.Scene([arrays]).shot(8, 8)):
+        with pytest.raises(ValueError, match="was not loaded from a file"):
+            pickle.dumps(it)
 
 
 def test_automatic_lights_of_a_scene_file_are_those_of_models(tmp_path):

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from . import _marraztu
-from ._values import Material, material_of
+from ._values import UNCHANGED, Material, material_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -92,6 +92,18 @@ class Mesh:
         mesh = cls.__new__(cls)
         mesh._mesh = kernel
         return mesh
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Pickles the mesh by the name of its file, which the other process reads again. Raises
+        `ValueError` for a mesh of arrays."""
+        scene = _marraztu.Scene()
+        scene.add(self._mesh, None, UNCHANGED)
+        return Mesh._restored, scene.dump()
+
+    @classmethod
+    def _restored(cls, text: Any, is_lit: bool, is_file: bool) -> Mesh:
+        scene = _marraztu.Scene.restore(text, is_lit, is_file)
+        return cls._wrap(scene.mesh(scene.objects()[0][0]))
 
     @classmethod
     def load(

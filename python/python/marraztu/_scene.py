@@ -11,7 +11,7 @@ from . import _marraztu
 from ._camera import Camera
 from ._mesh import Mesh, warn_of
 from ._shot import Effect, Explanation, Shot
-from ._values import Light, Material, bytes_of, material_of, tuples
+from ._values import UNCHANGED, Light, Material, bytes_of, material_of, tuples
 
 if TYPE_CHECKING:
     import numpy as np
@@ -105,11 +105,6 @@ class Node:
         return f"<Node {self.name!r}, id {self.id}>"
 
 
-UNCHANGED: dict[str, object] = dict.fromkeys(
-    ("name", "visible", "pose", "material", "opacity", "sides")
-)
-
-
 def _rows(pose: ArrayLike) -> list[list[float]]:
     import numpy as np
 
@@ -171,6 +166,27 @@ class Scene:
         if not os.fspath(path).lower().endswith(".marraztu"):
             raise ValueError(f"{path} is not the name of a scene: choose one in .marraztu")
         self._scene.save(os.fspath(path))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Pickles name the files of meshes, which are read again: see `Mesh.__reduce__`.
+        keys = [node._key for node in self._nodes]
+        return Scene._restored, (*self._scene.dump(), keys, self.unit, self.findings)
+
+    @classmethod
+    def _restored(
+        cls,
+        text: Any,
+        is_lit: bool,
+        is_file: bool,
+        keys: list[int],
+        unit: float,
+        findings: list[str],
+    ) -> Scene:
+        scene = cls(unit=unit)
+        scene._scene, scene.findings = _marraztu.Scene.restore(text, is_lit, is_file), findings
+        rows = {row[0]: row for row in scene._scene.objects()}
+        scene._nodes = [Node(scene._scene, rows[key]) for key in keys]
+        return scene
 
     @property
     def unit(self) -> float:

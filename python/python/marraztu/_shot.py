@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterable, Iterator
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from . import _marraztu
 from ._picture import Picture
@@ -80,6 +80,15 @@ class Shot:
         self.normals = normals
         self.transparent = transparent
         self.unit = unit
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Pickles name the files of meshes, which are read again: see `Mesh.__reduce__`.
+        rest = (self.layers, self.normals, self.transparent, self.unit)
+        return Shot._restored, (*self._shot.dump(), *rest)
+
+    @classmethod
+    def _restored(cls, text: Any, size: tuple[int, int], *rest: Any) -> Shot:
+        return cls(_marraztu.Shot.restore(text, size), *rest)
 
     @property
     def width(self) -> int:

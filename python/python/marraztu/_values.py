@@ -40,6 +40,12 @@ def triple_of(values: Sequence[float], what: str) -> Triple:
     return x, y, z
 
 
+# The properties of a node that stay as they are.
+UNCHANGED: dict[str, object] = dict.fromkeys(
+    ("name", "visible", "pose", "material", "opacity", "sides")
+)
+
+
 def material_of(material: Any) -> Material | str | None:
     """Checks a material, or the name of one."""
     if material is None or isinstance(material, str):
