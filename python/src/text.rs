@@ -1,4 +1,5 @@
-//! Scenes as text for other processes. Models and textures are named by their files, and read there.
+//! Scenes as text for other processes. Models and textures are named by their files, and read
+//! there.
 
 use std::collections::BTreeMap;
 
