@@ -6,8 +6,7 @@
 //!
 //! Everything that can be checked is checked before the first picture: the list, its options, the
 //! cameras ([`rows`]) and the names of the outputs ([`outputs`]). Then each thread draws one
-//! picture at a time ([`studio`]), and the main thread collects the results ([`report`],
-//! [`tables`]). Rows and hashes of names are held in memory, but neither pictures nor results, so
+//! picture at a time ([`studio`]), and the main thread collects the [`results`]. Rows and hashes of names are held in memory, but neither pictures nor results, so
 //! the number of pictures has no limit.
 
 mod cache;
@@ -24,6 +23,7 @@ mod options;
 mod outcome;
 mod outputs;
 pub(super) mod report;
+mod results;
 mod rows;
 mod shard;
 mod sheets;
@@ -50,12 +50,12 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 use self::dataset::{Dataset, check_used_folder};
 use self::estimate::print_estimate;
 use self::jobs::Plan;
-use self::meter::Meter;
 use self::options::OptionTexts;
+use self::outcome::Outcome;
 pub(super) use self::outcome::Status;
-use self::outcome::{Fault, Outcome};
 use self::outputs::{check_inputs, check_outputs};
-use self::report::{Counts, Reporter, check_report};
+use self::report::{Counts, check_report};
+use self::results::Results;
 use self::rows::{Row, Rows};
 use self::shard::{Shard, shard};
 use self::sheets::{Grid, check_sheets, grid, write_sheets};
@@ -64,7 +64,7 @@ use self::tables::Tables;
 use self::tars::{TarNames, Tars};
 use super::arguments::choice;
 use super::budget::Budget;
-use super::cameras::{CAMERAS, Cameras, Earlier, check_cameras, part_name};
+use super::cameras::{CAMERAS, check_cameras, part_name};
 use super::failure::{Failure, usage};
 use super::layers::NUMBER_ENDINGS;
 use super::split::{Split, split};
@@ -270,76 +270,6 @@ fn within_budget(arguments: Batch) -> Result<Batch, Failure> {
         arguments.options = arguments.options.and(axis, choice);
     }
     Ok(arguments)
-}
-
-/// The results of a batch, as they come.
-struct Results<'a> {
-    meter: Meter,
-    reporter: Reporter<'a>,
-    cameras: Cameras,
-    /// The tables of a data set.
-    tables: Option<Tables>,
-    tars: Option<Tars>,
-    /// The numbers and positions of finished jobs, for contact sheets.
-    done: Vec<(usize, usize)>,
-    has_sheets: bool,
-    stops: bool,
-    /// The number of pictures of models with findings.
-    repaired: usize,
-}
-
-impl<'a> Results<'a> {
-    fn begin(arguments: &Batch, name: String, studio: &'a Studio) -> Result<Self, Failure> {
-        let plan = studio.plan();
-        let (report, times) = (arguments.report.as_deref(), arguments.times.as_deref());
-        let folder = Path::new(arguments.out.as_deref().unwrap_or_default());
-        let earlier = match arguments.dataset {
-            Some(_) => Earlier::Dropped,
-            None => Earlier::Kept,
-        };
-        Ok(Self {
-            meter: Meter::of(plan.len()),
-            reporter: Reporter::begin(plan, report, times)?,
-            cameras: Cameras::new(name, earlier, arguments.split),
-            // A part of a list does not know all models: the tables are left to a last run.
-            tables: arguments
-                .dataset
-                .filter(|_| !is_part(arguments))
-                .and_then(|dataset| Tables::of(dataset, folder)),
-            tars: plan.tars().zip(studio.earlier_tars()).map(|(names, earlier)| {
-                Tars::new(Arc::clone(names), plan.all, Arc::clone(earlier))
-            }),
-            done: Vec::new(),
-            has_sheets: arguments.sheet.is_some(),
-            stops: arguments.stop,
-            repaired: 0,
-        })
-    }
-
-    /// Adds a result. Returns whether the batch goes on. Fails if a file cannot be written.
-    fn add(&mut self, mut outcome: Outcome) -> Result<bool, Failure> {
-        self.meter.add(&outcome);
-        self.reporter.add(&outcome)?;
-        let job = &outcome.job;
-        if let (Some(tars), false) = (&mut self.tars, outcome.result == Err(Fault::Cancelled)) {
-            let drawn = outcome.result.as_mut().ok();
-            let members = drawn.map(|drawn| std::mem::take(&mut drawn.members));
-            tars.add(job.index, members.unwrap_or_default())?;
-        }
-        let Ok(drawn) = &mut outcome.result else { return Ok(!self.stops) };
-        if self.has_sheets {
-            self.done.push((job.index, job.position));
-        }
-        self.repaired += usize::from(!drawn.findings.is_empty());
-        match (&mut self.tables, &drawn.image) {
-            (Some(tables), Some(image)) => tables.add(job, image)?,
-            (None, Some(_)) => {}
-            (_, None) => {
-                drawn.camera.take().map_or(Ok(()), |camera| self.cameras.add(*camera))?;
-            }
-        }
-        Ok(true)
-    }
 }
 
 impl Batch {
