@@ -6,8 +6,9 @@
 //!
 //! Everything that can be checked is checked before the first picture: the list, its options, the
 //! cameras ([`rows`]) and the names of the outputs ([`outputs`]). Then each thread draws one
-//! picture at a time ([`studio`]), and the main thread collects the [`results`]. Rows and hashes of names are held in memory, but neither pictures nor results, so
-//! the number of pictures has no limit.
+//! picture at a time ([`studio`]), and the main thread collects the [`results`]. Rows and hashes of
+//! names are held in memory, but neither pictures nor results, so the number of pictures has no
+//! limit.
 
 mod cache;
 mod camera_file;
