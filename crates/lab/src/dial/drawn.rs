@@ -15,7 +15,7 @@ const STEADYING: Duration = Duration::from_secs(2);
 const SLOW: f64 = 1500.0;
 
 /// The divisors of width and height of the smaller pictures that tell the time of a slow one.
-const SMALLER: [usize; 2] = [8, 4];
+const SMALLER: [usize; 2] = [6, 3];
 
 /// The part by which the time of a slow picture may differ from what smaller ones tell.
 const UNCERTAIN: f64 = 0.25;
@@ -92,9 +92,11 @@ impl Drawn {
         for divisor in SMALLER {
             let size = Size::new(width.div_ceil(divisor), height.div_ceil(divisor));
             let plan = plan_frame(&Shot { size, ..self.shot.clone() });
-            // The first picture builds what later ones reuse.
-            let first = milliseconds(renderer, &plan, wanted)?;
-            let time = first.min(milliseconds(renderer, &plan, wanted)?);
+            if known.is_empty() {
+                // The first picture builds what later ones reuse.
+                milliseconds(renderer, &plan, wanted)?;
+            }
+            let time = milliseconds(renderer, &plan, wanted)?;
             let pixels = size.area() as f64;
             if time * self.shot.size.area() as f64 / pixels < SLOW {
                 return Ok(None);
