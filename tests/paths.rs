@@ -20,14 +20,12 @@ const FIRST: ObjectId = ObjectId(10);
 /// A path: its name, and its counter.
 type Path = (&'static str, fn(&PathPixels) -> u64);
 
-const FILLED: Path = ("filled", |pixels| pixels.filled);
-const CORNERS: Path = ("corners", |pixels| pixels.corners);
-const LIT: Path = ("lit", |pixels| pixels.lit);
-const ALONE: Path = ("alone", |pixels| pixels.alone);
-const JOINED: Path = ("joined", |pixels| pixels.joined);
-const TINY: Path = ("tiny", |pixels| pixels.tiny);
+const FILL: Path = ("fill", |pixels| pixels.fill);
 const FACES: Path = ("faces", |pixels| pixels.faces);
-const ALL: [Path; 7] = [FILLED, CORNERS, LIT, ALONE, JOINED, TINY, FACES];
+const ONE: Path = ("one", |pixels| pixels.one);
+const SLOTS: Path = ("slots", |pixels| pixels.slots);
+const EACH: Path = ("each", |pixels| pixels.each);
+const ALL: [Path; 5] = [FILL, FACES, ONE, SLOTS, EACH];
 
 /// Counts the pixels of a scene without marks, by path.
 ///
@@ -39,7 +37,7 @@ fn paths(scene: &Scene, view: &View, settings: Settings) -> PathPixels {
     let mut renderer = Renderer::default();
     let one = ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     one.install(|| renderer.render(&plan));
-    renderer.path_pixels()
+    renderer.path_pixels().unwrap()
 }
 
 fn of(model: Shared<Model>) -> (Scene, View) {
@@ -98,35 +96,36 @@ fn expect(
 fn each_path_colours_the_surfaces_that_it_is_meant_for() {
     let [face, vertex, pixel] = [LightAt::Face, LightAt::Vertex, LightAt::Pixel].map(with_light);
     // Blocks at borders and of many triangles have lists.
-    let lists: &[Path] = &[JOINED, ALONE];
-    expect("flat shading of large triangles", large(), face, (&[FILLED, FACES], &[]));
-    expect("flat shading of small triangles", fine(), face, (&[FACES], &[FILLED]));
-    expect("Gouraud shading of large triangles", large(), vertex, (&[CORNERS], lists));
-    expect("Gouraud shading of small triangles", fine(), vertex, (&[JOINED], &[CORNERS, ALONE]));
-    expect("Gouraud shading of tiny triangles", finest(), vertex, (&[TINY], lists));
-    expect("Phong shading of large triangles", large(), pixel, (&[LIT], lists));
-    expect("Phong shading of small triangles", fine(), pixel, (&[JOINED], &[LIT, ALONE]));
-    expect("Phong shading of tiny triangles", finest(), pixel, (&[TINY], lists));
+    let lists: &[Path] = &[SLOTS];
+    expect("flat shading of large triangles", large(), face, (&[FILL, FACES], &[]));
+    expect("flat shading of small triangles", fine(), face, (&[FACES], &[FILL]));
+    expect("Gouraud shading of large triangles", large(), vertex, (&[ONE], lists));
+    expect("Gouraud shading of small triangles", fine(), vertex, (&[SLOTS], &[ONE]));
+    expect("Gouraud shading of tiny triangles", finest(), vertex, (&[EACH], lists));
+    expect("Phong shading of large triangles", large(), pixel, (&[ONE], lists));
+    expect("Phong shading of small triangles", fine(), pixel, (&[SLOTS], &[ONE]));
+    expect("Phong shading of tiny triangles", finest(), pixel, (&[EACH], lists));
 }
 
 #[test]
-fn whatever_fast_paths_cannot_do_is_left_to_fragment_lists() {
+fn whatever_fast_paths_cannot_do_is_left_to_slots() {
     let usual = Settings::default();
-    expect("shadows", with_shadows(fine()), usual, (&[ALONE], &[]));
-    expect("shadows on large triangles", with_shadows(large()), usual, (&[ALONE], &[]));
+    expect("shadows", with_shadows(fine()), usual, (&[SLOTS], &[]));
+    expect("shadows on large triangles", with_shadows(large()), usual, (&[SLOTS], &[]));
     let f64 = Settings { arithmetic: Arithmetic::F64, ..usual };
     for own in [large(), fine(), finest()] {
-        expect("f64", own, f64, (&[ALONE], &[]));
+        expect("f64", own, f64, (&[SLOTS], &[]));
     }
     let (mut scene, view) = large();
     edit(&mut scene, FIRST, |object| object.sides = Sides::One);
     let red = View { back_faces: true, ..view };
-    expect("red back faces", (scene, red), usual, (&[ALONE], &[]));
+    expect("red back faces", (scene, red), usual, (&[SLOTS], &[]));
     let dithered = Settings { rounding: Rounding::Dithered, ..with_light(LightAt::Face) };
-    expect("dithered flat shading", large(), dithered, (&[ALONE], &[]));
+    expect("dithered flat shading", large(), dithered, (&[SLOTS], &[]));
     let linear = Settings { light_values: LightValues::Linear, ..with_light(LightAt::Vertex) };
-    expect("linear Gouraud shading of small triangles", fine(), linear, (&[JOINED], &[ALONE]));
-    expect("linear Gouraud shading of tiny triangles", finest(), linear, (&[ALONE], &[JOINED]));
+    for own in [large(), fine(), finest()] {
+        expect("linear Gouraud shading", own, linear, (&[SLOTS], &[]));
+    }
 }
 
 #[test]
@@ -139,7 +138,7 @@ fn the_plan_names_the_path_of_each_object() {
         surfaces.unwrap().state.why().to_owned()
     };
     let pixel = words(Settings::default());
-    assert_eq!(pixel, "blocks, tiny");
+    assert_eq!(pixel, "block by block");
     let f64 = words(Settings { arithmetic: Arithmetic::F64, ..Settings::default() });
-    assert_eq!(f64, "lists");
+    assert_eq!(f64, "pixel by pixel: 64-bit numbers");
 }

@@ -9,7 +9,7 @@ use marraztu_lab::cost::{self, Costs, Explained, Group};
 use marraztu_lab::dial::error_in_words;
 use marraztu_lab::estimate::Estimate;
 use marraztu_lab::report::quoted;
-use marraztu_render::EffectUse;
+use marraztu_render::{EffectUse, PathPixels};
 use serde::Serialize;
 
 use super::arguments::PictureArguments;
@@ -106,12 +106,25 @@ fn table(explained: &Explained, costs: Option<&Costs>) -> String {
         "\n{} x {} pixels. Leaving effects out does not change a single bit.",
         size.width, size.height
     );
+    if let Some(paths) = explained.paths {
+        text += &path_table(&paths);
+    }
     if let Some(costs) = costs {
         let (frame, noise) = (costs.frame, costs.noise);
         let _ = writeln!(text, "A frame takes {frame:.3} ms; less than {noise:.3} ms is noise.");
         text += &worth(explained, costs);
     }
     text
+}
+
+/// Lists how the pixels got their colours.
+fn path_table(paths: &PathPixels) -> String {
+    let head = ["Path", "For", "Pixels"].map(str::to_owned);
+    let rows = paths
+        .rows()
+        .map(|(name, reason, pixels)| [name.to_owned(), reason.to_owned(), pixels.to_string()]);
+    let rows: Vec<[String; 3]> = std::iter::once(head).chain(rows).collect();
+    format!("\n{}\n", columns(&rows, 2..3))
 }
 
 /// Lists what is lost without each effect, in the order of the error that a millisecond saves.
@@ -215,6 +228,8 @@ struct PlanReport<'a> {
     height: usize,
     frame_milliseconds: Option<f64>,
     noise_milliseconds: Option<f64>,
+    /// How the pixels got their colours, if all were drawn at once.
+    paths: Option<PathPixels>,
     effects: Vec<Row<'a>>,
 }
 
@@ -224,6 +239,7 @@ fn json(explained: &Explained, costs: Option<&Costs>) -> String {
         height: explained.size.height,
         frame_milliseconds: costs.map(|costs| costs.frame),
         noise_milliseconds: costs.map(|costs| costs.noise),
+        paths: explained.paths,
         effects: explained.uses.iter().map(|one| Row::new(one, costs)).collect(),
     })
 }

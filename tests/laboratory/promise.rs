@@ -95,9 +95,8 @@ fn the_draft_colours_a_quarter_of_the_pixels() {
             let mut renderer = Renderer::default();
             let picture = renderer.render(&plan_frame(&studio.shot().with(*settings))).size();
             assert_eq!(picture, SIZE);
-            let PathPixels { filled, corners, lit, alone, joined, tiny, faces } =
-                renderer.path_pixels();
-            filled + corners + lit + alone + joined + tiny + faces
+            let PathPixels { fill, faces, one, slots, each } = renderer.path_pixels().unwrap();
+            fill + faces + one + slots + each
         };
         let (draft, default) = (pixels(&preset("draft")), pixels(&preset("default")));
         // Lines are as wide in drawn pixels, so they have half of their pixels. Small pictures have

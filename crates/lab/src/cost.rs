@@ -18,7 +18,7 @@ use marraztu_core::accuracy::Shot;
 use marraztu_core::base::image::Size;
 use marraztu_render::explain_frame;
 use marraztu_render::plan_frame;
-use marraztu_render::{Effect, EffectUse, FramePlan, Renderer};
+use marraztu_render::{Effect, EffectUse, FramePlan, PathPixels, Renderer};
 
 /// The fewest pairs per effect, unless frames take long.
 const PAIRS: usize = 7;
@@ -39,6 +39,8 @@ pub struct Explained {
     pub uses: Vec<EffectUse>,
     /// The size of the picture.
     pub size: Size,
+    /// How its pixels were coloured, if all were.
+    pub paths: Option<PathPixels>,
 }
 
 /// The uses of one effect; never empty.
@@ -164,8 +166,9 @@ pub fn explain(shot: &Shot) -> Explained {
 /// Works like [`explain`], for the picture that `renderer` drew last.
 pub fn explain_with(renderer: &mut Renderer, shot: &Shot) -> Explained {
     let (_, mut uses) = explain_frame(shot);
+    let paths = renderer.path_pixels();
     renderer.count(&mut uses);
-    Explained { uses, size: shot.size }
+    Explained { uses, size: shot.size, paths }
 }
 
 /// Measures the costs of a picture's effects within about `budget`. Once `stopped` returns true,

@@ -74,7 +74,7 @@ pub use bands::Bands;
 pub use damage::{Change, Damage, DamageCause};
 pub use exposure::fitted_exposure;
 pub use frame::FramePlan;
-pub use frame::color_path::PathPixels;
+pub use frame::program::PathPixels;
 pub use layers::{
     Layer, LayerNames, LayerSet, LayerType, LayerValues, Layers, NamedObject, NamedPart,
     NormalSpace,

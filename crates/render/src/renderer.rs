@@ -14,20 +14,17 @@ use std::sync::{Mutex, PoisonError};
 
 use fearless_simd::Level;
 
-use super::shading::context::{Around, OffScreen, ShadingContext};
+use super::shading::context::Prepared;
 use super::shading::face_colors::FaceColors;
-use super::shading::light::Lit;
 use super::shading::painter::{Band, Filled, Painter, TileSums};
 use crate::cancellation::Cancellation;
 use crate::damage::kept_shadows::KeptShadows;
 use crate::damage::{Damage, DamageCause};
-use crate::frame::color_path::{ColorPaths, PathPixels};
+use crate::frame::program::PathPixels;
 use crate::frame::{FramePlan, Rules};
-use crate::plan::color_path::choose;
 use crate::raster::geometry::ScreenGeometry;
 use crate::screen::sample_positions::{SamplePositions, passes, shifts};
 use crate::screen::tiles::TILE_SIDE;
-use crate::shading::light_terms::LightTerms;
 use crate::shading::path_number::PathNumber;
 use crate::shadow::maps::ShadowMaps;
 use crate::shadow::rays::RayCount;
@@ -63,6 +60,8 @@ pub struct Renderer {
     timings: Timings,
     rays: RayCount,
     path_pixels: PathPixels,
+    /// Whether the last picture was drawn completely.
+    drew_all: bool,
     maps: ShadowMaps,
     shadows: KeptShadows,
 }
@@ -104,6 +103,7 @@ impl Renderer {
             timings: Timings::default(),
             rays: RayCount::default(),
             path_pixels: PathPixels::default(),
+            drew_all: false,
             maps: ShadowMaps::default(),
             shadows: KeptShadows::default(),
         }
@@ -258,6 +258,7 @@ impl Renderer {
         self.timings = Timings::default();
         self.rays = RayCount::default();
         self.path_pixels = PathPixels::default();
+        self.drew_all = damage.tiles() == damage.tiles_in_all() && !plan.is_supersampled();
         if plan.is_supersampled() {
             self.built = false;
             return self.draw_supersampled(plan, damage, watch);
@@ -367,11 +368,11 @@ impl Renderer {
         self.rays
     }
 
-    /// Returns the number of pixels that each way of colouring has coloured in the last frame:
-    /// those drawn again, in each pass over several samples.
+    /// Returns the number of pixels that each path has coloured in the last picture, in each pass
+    /// over several samples. `None` if only a part was drawn again.
     #[must_use]
-    pub const fn path_pixels(&self) -> PathPixels {
-        self.path_pixels
+    pub fn path_pixels(&self) -> Option<PathPixels> {
+        self.drew_all.then_some(self.path_pixels)
     }
 
     /// Returns the number of triangles in the last picture.
@@ -383,8 +384,8 @@ impl Renderer {
     /// Prepares the light of a plan.
     fn prepare(&mut self, plan: &FramePlan) {
         match plan.arithmetic {
-            Arithmetic::F32 => self.caches.fast.prepare(plan),
-            Arithmetic::F64 => self.caches.exact.prepare(plan),
+            Arithmetic::F32 => self.caches.fast.prepared.prepare(plan),
+            Arithmetic::F64 => self.caches.exact.prepared.prepare(plan),
         }
     }
 
@@ -400,9 +401,8 @@ impl Renderer {
         // Shadow maps and the cache of face colours come first: all threads read them.
         let mut laps = Laps::start();
         self.maps.update(self.level, plan, watch);
-        let ShadingCache { terms, around_terms, lit, faces, paths, painters } = cache;
-        choose(plan, paths);
-        let looks_up = paths.looks_up_faces && !self.frame.sample_positions().are_many();
+        let ShadingCache { prepared, faces, painters } = cache;
+        let looks_up = prepared.looks_up_faces() && !self.frame.sample_positions().are_many();
         if looks_up {
             faces.begin(self.frame.triangle_numbers());
         }
@@ -410,14 +410,10 @@ impl Renderer {
         let tracer = Tracer::new(plan, &self.maps).map(|it| it.with_known(self.shadows.known()));
         let tracer = tracer.as_ref();
         let faces = looks_up.then_some(&*faces);
-        let off_screen = OffScreen::default();
         let around_plan = plan.surroundings.as_deref();
         let around_tracer = around_plan.and_then(|around| Tracer::new(around, &self.maps));
-        let inputs = (&*lit, &*around_terms, around_tracer.as_ref());
-        let around = Around::new(level, plan, inputs, &off_screen);
-        let around = around.as_ref();
-        let context =
-            ShadingContext { level, plan, frame, lit, terms, faces, paths, tracer, around };
+        let around = prepared.around(level, plan, around_tracer.as_ref());
+        let context = prepared.context(level, (plan, frame), faces, (tracer, around.as_ref()));
         let first_row = self.first_row;
         let Size { width, .. } = plan.size;
         let columns = width.div_ceil(TILE_SIDE);
@@ -477,24 +473,10 @@ struct Pass<'a> {
 /// Shading results reused from frame to frame, for one arithmetic.
 #[derive(Debug, Default)]
 struct ShadingCache<T> {
-    terms: LightTerms<T>,
-    /// The light terms of the surroundings.
-    around_terms: LightTerms<T>,
-    lit: Lit<T>,
+    prepared: Prepared<T>,
     faces: FaceColors,
-    paths: ColorPaths,
     /// One painter per thread.
     painters: Vec<Painter<T>>,
-}
-
-impl<T: PathNumber> ShadingCache<T> {
-    fn prepare(&mut self, plan: &FramePlan) {
-        self.terms.prepare(plan);
-        if let Some(around) = &plan.surroundings {
-            self.around_terms.prepare(around);
-        }
-        self.lit.prepare(plan);
-    }
 }
 
 #[derive(Debug, Default)]

@@ -24,7 +24,7 @@ use marraztu_core::scene::{Command, ItemId, Scene};
 use marraztu_lab::cost::{Cost, Explained, Group};
 use marraztu_lab::dial::error_in_words;
 use marraztu_lab::estimate::Estimate;
-use marraztu_render::{Effect, EffectUse};
+use marraztu_render::{Effect, EffectUse, PathPixels};
 
 pub(crate) fn show(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let Some(explained) = state.plan.explained.clone() else {
@@ -211,7 +211,8 @@ fn table_ui(ui: &mut Ui, state: &State, requests: &mut Requests, explained: &Exp
         ui.spacing_mut().item_spacing.y = 0.0;
         for group in explained.groups() {
             let is_open = open.contains(&group.effect);
-            if group_ui(ui, (state, requests), (most, times), &group, is_open) {
+            let paths = explained.paths.filter(|_| group.effect == Effect::Surfaces);
+            if group_ui(ui, (state, requests), (most, times), (&group, paths), is_open) {
                 if is_open {
                     open.remove(&group.effect);
                 } else {
@@ -234,7 +235,7 @@ fn group_ui(
     ui: &mut Ui,
     (state, requests): (&State, &mut Requests),
     (most, times): (u64, Option<&Arc<Measured>>),
-    group: &Group<'_>,
+    (group, paths): (&Group<'_>, Option<PathPixels>),
     is_open: bool,
 ) -> bool {
     let first = &group.uses[0];
@@ -252,7 +253,10 @@ fn group_ui(
         most,
         is_measured: times.is_some(),
     };
-    let (rect, response) = row.ui(ui);
+    let (rect, mut response) = row.ui(ui);
+    if let Some(paths) = paths {
+        response = response.on_hover_text_at_pointer(coloured_by(&paths));
+    }
     if let Some(Ok(command)) = switched(&state.scene, group.effect)
         && row.switch_ui(ui, rect, group.effect)
     {
@@ -274,6 +278,16 @@ fn group_ui(
         }
     }
     folds && response.clicked()
+}
+
+/// Says how the pixels got their colours.
+fn coloured_by(paths: &PathPixels) -> String {
+    let used = paths.rows().into_iter().filter(|(.., pixels)| *pixels > 0);
+    let lines = used.map(|(name, reason, pixels)| {
+        let pixels = grouped(usize::try_from(pixels).unwrap_or(usize::MAX));
+        format!("{name}: {pixels} pixels ({reason})")
+    });
+    lines.collect::<Vec<_>>().join("\n")
 }
 
 /// Shows what the picture loses without an effect.

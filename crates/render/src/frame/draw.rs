@@ -6,7 +6,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use glam::{DMat3, DMat4};
 
 use super::extras::{Extras, bits};
-use crate::lights::{self, Form, LightRow, PhongMaterial};
+use crate::lights::{Form, LightRow, PhongMaterial};
 use marraztu_core::base::{Shared, color::Color};
 use marraztu_core::scene::{ItemId, Model, NormalSource, Normals, Texture};
 
@@ -209,6 +209,11 @@ impl Shaded {
         }
     }
 
+    /// Returns the lights that are evaluated.
+    pub(crate) fn stages(&self) -> &[Stage] {
+        self.light.as_deref().unwrap_or_default()
+    }
+
     /// Returns whether the surface itself has a colour or an opacity for each pixel.
     pub(crate) fn varies(&self) -> bool {
         self.texture.is_some()
@@ -261,13 +266,6 @@ pub(crate) struct Stage {
     pub(crate) highlight: Form,
     /// Whether a map multiplies the exponent of the highlight.
     pub(crate) is_mapped: bool,
-}
-
-impl Stage {
-    /// Returns the light shader, compiled for the stage's highlight.
-    pub(crate) fn variant(&self) -> lights::Variant {
-        (self.effect.variant)(self.highlight, self.is_mapped)
-    }
 }
 
 impl PartialEq for Stage {

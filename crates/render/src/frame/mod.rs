@@ -1,10 +1,11 @@
 //! The contents of a frame, as plain data. Nothing here makes a decision or touches a pixel.
 
-pub(crate) mod color_path;
 pub(crate) mod draw;
 pub(crate) mod extras;
 mod prepare;
+pub(crate) mod program;
 pub(crate) mod raster_mode;
+pub(crate) mod shading_mode;
 pub(crate) mod shadows;
 pub(crate) mod variants;
 
@@ -12,6 +13,7 @@ use glam::{DMat4, DVec3};
 
 use self::draw::{Draw, Pipeline};
 use self::raster_mode::RasterMode;
+use self::shading_mode::ShadingMode;
 use self::shadows::Shadows;
 use self::variants::Variants;
 use super::lights::ViewLight;
@@ -126,6 +128,11 @@ impl FramePlan {
     /// Returns what rasterisation reads of the settings.
     pub(crate) const fn raster_mode(&self) -> RasterMode {
         self.variants.raster_mode()
+    }
+
+    /// Returns what shading reads of the settings.
+    pub(crate) fn shading_mode(&self) -> ShadingMode {
+        ShadingMode::of(&self.variants)
     }
 
     /// Returns the plan of the picture seen by one sample of each pixel, `right` and `down` from

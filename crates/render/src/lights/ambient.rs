@@ -1,7 +1,7 @@
 //! Ambient light.
 
 use super::batch::{Reflected, Sample, set};
-use super::phong::{Highlight, LightTerm, PhongMaterial, ViewLight};
+use super::phong::{LightTerm, PhongMaterial, ViewLight};
 use super::shader::{LightShader, Which};
 use crate::simd::Lanes;
 
@@ -25,7 +25,7 @@ impl LightShader for Ambient {
     }
 
     #[inline(always)]
-    fn shade<M: Lanes, H: Highlight>(
+    fn shade<M: Lanes>(
         lanes: M,
         _: Sample<M::R>,
         term: &LightTerm<M::Number>,

@@ -124,9 +124,3 @@ pub(crate) fn store<M: Lanes>(
     lanes.store(value.0[1], y, at);
     lanes.store(value.0[2], z, at);
 }
-
-#[inline(always)]
-pub(super) fn add<M: Lanes>(lanes: M, more: Vec3<M::R>, rows: &mut Rows<M::Number>, at: usize) {
-    let sum = load(lanes, rows, at).plus(more);
-    store(lanes, sum, rows, at);
-}

@@ -1,7 +1,7 @@
 //! Point lights.
 
 use super::batch::{Reflected, Sample, set};
-use super::phong::{Highlight, LightTerm, phong};
+use super::phong::{LightTerm, phong};
 use super::shader::{LightShader, Which};
 use crate::simd::{Lanes, Real as _, Vec3};
 
@@ -13,13 +13,13 @@ impl LightShader for Bulb {
     const WHICH: Which = Which::Bulb;
 
     #[inline(always)]
-    fn shade<M: Lanes, H: Highlight>(
+    fn shade<M: Lanes>(
         lanes: M,
         sample: Sample<M::R>,
         term: &LightTerm<M::Number>,
     ) -> Option<Reflected<M::R>> {
         let (to_light, strength) = arriving(lanes, sample.position, term);
-        phong::<M, H>(lanes, sample, to_light, Some(strength), term)
+        phong(lanes, sample, to_light, Some(strength), term)
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Each kind of light is one file in this folder and one row: see [`row_of`]. Its shader
 //! decides when a scene needs it, and computes the reflected light once, generically over
-//! [`Real`](super::simd::Real). The row holds the compiled variants. A frame pays only for the
+//! [`Real`](super::simd::Real). One kernel adds all lights ([`sum`]). A frame pays only for the
 //! lights that it has.
 //!
 //! Light is computed in view space, for a batch of positions at a time: of pixels, vertices or
@@ -16,14 +16,14 @@ pub(crate) mod region;
 mod shader;
 mod sky;
 mod spot;
+mod sum;
 mod sun;
-mod together;
 
 pub(crate) use batch::{Batch, Rows, Sample, columns, load, set, store, turned};
 pub(crate) use phong::{Form, LightTerm, PhongMaterial, ViewLight};
 pub(crate) use region::Region;
-pub(crate) use shader::{Light, LightRow, Variant};
-pub(crate) use together::Together;
+pub(crate) use shader::LightRow;
+pub(crate) use sum::{add_light, set_lights};
 
 use marraztu_core::scene::LightKind;
 

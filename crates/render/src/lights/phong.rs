@@ -4,6 +4,7 @@
 
 use super::batch::{Reflected, Sample, set};
 use super::region::Region;
+use super::shader::Which;
 use crate::simd::power::least_cosine;
 use crate::simd::{Lanes, Number, Power, Real, Vec3};
 
@@ -61,6 +62,12 @@ impl PhongMaterial {
 /// The products of a light and a material, in the arithmetic of shading.
 #[derive(Clone, Debug)]
 pub(crate) struct LightTerm<T> {
+    /// The shader of the light.
+    pub(crate) which: Which,
+    /// The form of the highlight.
+    pub(crate) form: Form,
+    /// Whether a map multiplies the exponent of the highlight: see [`Sample::exponent`].
+    pub(crate) is_mapped: bool,
     /// I Ka.
     pub(crate) ambient: [T; 3],
     /// I Kd.
@@ -89,11 +96,19 @@ pub(crate) struct LightTerm<T> {
 
 impl<T: Number> LightTerm<T> {
     /// Multiplies a light and a material, with the prepared power of the material's highlight.
-    pub(crate) fn new(light: &ViewLight, material: &PhongMaterial, highlight: Power) -> Self {
+    pub(crate) fn new(
+        light: &ViewLight,
+        material: &PhongMaterial,
+        highlight: Power,
+        (which, form, is_mapped): (Which, Form, bool),
+    ) -> Self {
         let all = |numbers: [f64; 3]| numbers.map(T::from_f64);
         // Each product is formed in f64 and rounded once.
         let times = |k: [f64; 3]| all([0, 1, 2].map(|i| light.color[i] * k[i]));
         Self {
+            which,
+            form,
+            is_mapped,
             ambient: times(material.ambient),
             diffuse: times(material.diffuse),
             specular: times(material.specular),
@@ -119,66 +134,27 @@ const GATHERED_FLOOR: f64 = -24.0;
 pub(crate) enum Form {
     /// None: Ks is 0.
     Plain,
-    /// (R.V)^Ns
+    /// (R.V)^Ns with R = 2 (N.L) N - L: Phong, "Illumination for Computer Generated Pictures", CACM
+    /// 1975.
     Reflection,
-    /// (N.H)^Ns
+    /// (N.H)^Ns with H half-way between L and V: Blinn, "Models of Light Reflection for Computer
+    /// Synthesized Pictures", SIGGRAPH 1977.
     HalfVector,
 }
 
-/// The form of a specular highlight, as a type.
-pub(crate) trait Highlight {
-    /// Whether the exponent varies from position to position: see [`Sample::exponent`].
-    const IS_MAPPED: bool = false;
-    /// Computes the cosine to be raised to the exponent, if there is a highlight. `n_l` is N.L,
-    /// more than 0.
-    fn cosine<R: Real>(sample: Sample<R>, to_light: Vec3<R>, n_l: R) -> Option<R>;
-}
-
-/// No highlight.
-#[derive(Debug)]
-pub(crate) struct Nothing;
-/// R.V with R = 2 (N.L) N - L: Phong, "Illumination for Computer Generated Pictures", CACM 1975.
-#[derive(Debug)]
-pub(crate) struct Reflection;
-/// N.H with H half-way between L and V: Blinn, "Models of Light Reflection for Computer Synthesized
-/// Pictures", SIGGRAPH 1977.
-#[derive(Debug)]
-pub(crate) struct HalfVector;
-
-impl Highlight for Nothing {
-    #[inline(always)]
-    fn cosine<R: Real>(_: Sample<R>, _: Vec3<R>, _: R) -> Option<R> {
-        None
-    }
-}
-
-impl Highlight for Reflection {
-    #[inline(always)]
-    fn cosine<R: Real>(sample: Sample<R>, to_light: Vec3<R>, n_l: R) -> Option<R> {
-        let n_v = sample.normal.dot(sample.to_eye);
-        let two = n_l.lift(2.0);
-        // R.V = 2 (N.L) (N.V) - L.V saves computing R.
-        Some(two * n_l * n_v - to_light.dot(sample.to_eye))
-    }
-}
-
-impl Highlight for HalfVector {
-    #[inline(always)]
-    fn cosine<R: Real>(sample: Sample<R>, to_light: Vec3<R>, _: R) -> Option<R> {
-        Some(sample.normal.dot(to_light.plus(sample.to_eye).unit()))
-    }
-}
-
-/// A highlight with an exponent scaled by a map.
-#[derive(Debug)]
-pub(super) struct Mapped<H>(std::marker::PhantomData<H>);
-
-impl<H: Highlight> Highlight for Mapped<H> {
-    const IS_MAPPED: bool = true;
-
-    #[inline(always)]
-    fn cosine<R: Real>(sample: Sample<R>, to_light: Vec3<R>, n_l: R) -> Option<R> {
-        H::cosine(sample, to_light, n_l)
+/// Computes the cosine to be raised to the exponent, if there is a highlight. `n_l` is N.L, more
+/// than 0.
+#[inline(always)]
+fn cosine<R: Real>(form: Form, sample: Sample<R>, to_light: Vec3<R>, n_l: R) -> Option<R> {
+    match form {
+        Form::Plain => None,
+        Form::Reflection => {
+            let n_v = sample.normal.dot(sample.to_eye);
+            let two = n_l.lift(2.0);
+            // R.V = 2 (N.L) (N.V) - L.V saves computing R.
+            Some(two * n_l * n_v - to_light.dot(sample.to_eye))
+        }
+        Form::HalfVector => Some(sample.normal.dot(to_light.plus(sample.to_eye).unit())),
     }
 }
 
@@ -203,9 +179,9 @@ fn weakened<R: Real>(part: R, strength: Option<R>) -> R {
 ///   diffuse = s I Kd max(0, N.L),   specular = s I Ks [N.L > 0 and c > 0] c^Ns
 ///
 /// with s the remaining `strength` of the light's intensity I (1 if it is `None`), L the direction
-/// `to_light`, and c the cosine of the [`Highlight`].
+/// `to_light`, and c the cosine of the highlight's [`Form`].
 #[inline(always)]
-pub(super) fn phong<M: Lanes, H: Highlight>(
+pub(super) fn phong<M: Lanes>(
     lanes: M,
     sample: Sample<M::R>,
     to_light: Vec3<M::R>,
@@ -220,15 +196,15 @@ pub(super) fn phong<M: Lanes, H: Highlight>(
     }
     let diffuse = set(lanes, term.diffuse).times(weakened(Real::max(n_l, zero), strength));
     let mut specular = None;
-    if let Some(cosine) = H::cosine(sample, to_light, n_l) {
+    if let Some(cosine) = cosine(term.form, sample, to_light, n_l) {
         // Light that grazes the surface has no highlight.
         let lit = n_l.if_more(lanes.lift(GRAZING), cosine, zero);
         // A map can widen the highlight to any cosine.
-        let least = if H::IS_MAPPED { zero } else { lanes.set(term.least_cosine) };
+        let least = if term.is_mapped { zero } else { lanes.set(term.least_cosine) };
         if lanes.any_more(lit, least) {
             // Rounding can bring a cosine above 1.
             let cosine = Real::min(lit, lanes.lift(1.0));
-            let power = match H::IS_MAPPED {
+            let power = match term.is_mapped {
                 true => cosine.power_times(&term.highlight, sample.exponent),
                 false => cosine.power(&term.highlight),
             };

@@ -1,17 +1,11 @@
-//! The shader trait of a kind of light, and its compiled variants.
+//! The shader trait of a kind of light, and its row in the table.
 
-use std::marker::PhantomData;
-
-use fearless_simd::Level;
 use glam::DVec3;
 
-use super::batch::{Batch, Reflected, Sample, add, load};
-use super::phong::{
-    Form, HalfVector, Highlight, LightTerm, Mapped, Nothing, PhongMaterial, Reflection, ViewLight,
-    max_attenuation,
-};
+use super::batch::{Reflected, Sample};
+use super::phong::{LightTerm, PhongMaterial, ViewLight, max_attenuation};
 use super::region::Region;
-use crate::simd::{Kernel, Lanes, Number};
+use crate::simd::Lanes;
 
 /// The shader of a kind of light.
 pub(crate) trait LightShader {
@@ -56,7 +50,7 @@ pub(crate) trait LightShader {
         1.0
     }
     /// Shades some positions; `None` if it adds nothing at any of them.
-    fn shade<M: Lanes, H: Highlight>(
+    fn shade<M: Lanes>(
         lanes: M,
         sample: Sample<M::R>,
         term: &LightTerm<M::Number>,
@@ -78,14 +72,6 @@ pub(crate) enum Which {
     Spot,
 }
 
-/// A light shader compiled for one form of highlight: in f64 for the reference, and in f32 for the
-/// editor.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Variant {
-    reference: fn(Level, &mut Batch<f64>, &LightTerm<f64>),
-    fast: fn(Level, &mut Batch<f32>, &LightTerm<f32>),
-}
-
 /// A row of the table of light kinds: the constants and functions of its [`LightShader`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LightRow {
@@ -99,8 +85,6 @@ pub(crate) struct LightRow {
     pub(crate) is_behind: fn(&ViewLight, &Region, &[DVec3]) -> bool,
     pub(crate) max_falloff: fn(&ViewLight, Option<&Region>) -> f64,
     pub(crate) fraction_at: fn(&ViewLight, f64) -> f64,
-    /// Returns the variant with a form of highlight, and whether a map multiplies its exponent.
-    pub(crate) variant: fn(Form, bool) -> Variant,
 }
 
 impl LightRow {
@@ -117,78 +101,6 @@ impl LightRow {
             is_behind: E::is_behind,
             max_falloff: E::max_falloff,
             fraction_at: E::fraction_at,
-            variant: |form, is_mapped| match (form, is_mapped) {
-                // Without a highlight, its exponent is not read.
-                (Form::Plain, _) => variant::<E, Nothing>(),
-                (Form::Reflection, false) => variant::<E, Reflection>(),
-                (Form::HalfVector, false) => variant::<E, HalfVector>(),
-                (Form::Reflection, true) => variant::<E, Mapped<Reflection>>(),
-                (Form::HalfVector, true) => variant::<E, Mapped<HalfVector>>(),
-            },
         }
-    }
-}
-
-const fn variant<E: LightShader, H: Highlight>() -> Variant {
-    Variant { reference: shade::<f64, E, H>, fast: shade::<f32, E, H> }
-}
-
-/// Adds the light of a shader at every position of a batch.
-fn shade<T: Number, E: LightShader, H: Highlight>(
-    level: Level,
-    batch: &mut Batch<T>,
-    term: &LightTerm<T>,
-) {
-    T::run(level, Shade::<T, E, H> { batch, term, of: PhantomData });
-}
-
-struct Shade<'a, T, E, H> {
-    batch: &'a mut Batch<T>,
-    term: &'a LightTerm<T>,
-    of: PhantomData<(E, H)>,
-}
-
-impl<T: Number, E: LightShader, H: Highlight> Kernel<T> for Shade<'_, T, E, H> {
-    #[inline(always)]
-    fn run<M: Lanes<Number = T>>(self, lanes: M) {
-        let batch = self.batch;
-        for at in (0..batch.len).step_by(M::LANES) {
-            let sample = Sample {
-                position: load(lanes, &batch.position, at),
-                normal: load(lanes, &batch.normal, at),
-                to_eye: load(lanes, &batch.to_eye, at),
-                // The condition is constant, so variants without a map load nothing.
-                exponent: match H::IS_MAPPED {
-                    true => lanes.load(&batch.exponent, at),
-                    false => lanes.lift(1.0),
-                },
-            };
-            // Most lights reach only some positions; a light that adds nothing stores nothing.
-            let Some(reflected) = E::shade::<M, H>(lanes, sample, self.term) else {
-                continue;
-            };
-            add(lanes, reflected.diffuse, &mut batch.diffuse, at);
-            if let Some(specular) = reflected.specular {
-                add(lanes, specular, &mut batch.specular, at);
-            }
-        }
-    }
-}
-
-/// A number type that light shaders are compiled for.
-pub(crate) trait Light: Number {
-    /// Adds the light of a shader at every position of a batch.
-    fn add_light(variant: Variant, level: Level, batch: &mut Batch<Self>, term: &LightTerm<Self>);
-}
-
-impl Light for f64 {
-    fn add_light(variant: Variant, level: Level, batch: &mut Batch<Self>, term: &LightTerm<Self>) {
-        (variant.reference)(level, batch, term);
-    }
-}
-
-impl Light for f32 {
-    fn add_light(variant: Variant, level: Level, batch: &mut Batch<Self>, term: &LightTerm<Self>) {
-        (variant.fast)(level, batch, term);
     }
 }

@@ -1,7 +1,7 @@
 //! Light of the sky: one colour from above the horizon and another from below it.
 
 use super::batch::{Reflected, Sample, set};
-use super::phong::{Highlight, LightTerm, PhongMaterial, ViewLight};
+use super::phong::{LightTerm, PhongMaterial, ViewLight};
 use super::shader::{LightShader, Which};
 use crate::simd::Lanes;
 
@@ -28,7 +28,7 @@ impl LightShader for Sky {
     }
 
     #[inline(always)]
-    fn shade<M: Lanes, H: Highlight>(
+    fn shade<M: Lanes>(
         lanes: M,
         sample: Sample<M::R>,
         term: &LightTerm<M::Number>,

@@ -2,7 +2,7 @@
 
 use super::batch::{Reflected, Sample, set};
 use super::bulb::arriving;
-use super::phong::{Highlight, LightTerm, ViewLight, max_attenuation, phong};
+use super::phong::{LightTerm, ViewLight, max_attenuation, phong};
 use super::region::Region;
 use super::shader::{LightShader, Which};
 use crate::simd::{Lanes, Real};
@@ -43,7 +43,7 @@ impl LightShader for Spot {
     /// cosine of the half-aperture; if not, nothing arrives. Warn, "Lighting Controls for Synthetic
     /// Images", SIGGRAPH 1983.
     #[inline(always)]
-    fn shade<M: Lanes, H: Highlight>(
+    fn shade<M: Lanes>(
         lanes: M,
         sample: Sample<M::R>,
         term: &LightTerm<M::Number>,
@@ -59,6 +59,6 @@ impl LightShader for Spot {
         let gathered = c.power(&term.gathered);
         // Positions outside the cone may share a vector with others inside.
         let strength = c.if_more(border, strength * gathered, lanes.lift(0.0));
-        phong::<M, H>(lanes, sample, to_light, Some(strength), term)
+        phong(lanes, sample, to_light, Some(strength), term)
     }
 }

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::batch::{Reflected, Sample, set};
-use super::phong::{Highlight, LightTerm, ViewLight, phong};
+use super::phong::{LightTerm, ViewLight, phong};
 use super::region::{EDGE_ON, Region};
 use super::shader::{LightShader, Which};
 use crate::simd::Lanes;
@@ -23,11 +23,11 @@ impl LightShader for Sun {
     }
 
     #[inline(always)]
-    fn shade<M: Lanes, H: Highlight>(
+    fn shade<M: Lanes>(
         lanes: M,
         sample: Sample<M::R>,
         term: &LightTerm<M::Number>,
     ) -> Option<Reflected<M::R>> {
-        phong::<M, H>(lanes, sample, set(lanes, term.axis), None, term)
+        phong(lanes, sample, set(lanes, term.axis), None, term)
     }
 }

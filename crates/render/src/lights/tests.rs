@@ -41,14 +41,14 @@ fn light() -> ViewLight {
     }
 }
 
-fn term<T: Number>(light: &ViewLight) -> LightTerm<T> {
+fn term<T: Number>(entry: &LightRow, form: Form, light: &ViewLight) -> LightTerm<T> {
     let material = material();
-    LightTerm::new(light, &material, Power::new(material.exponent, material.floor))
+    let highlight = Power::new(material.exponent, material.floor);
+    LightTerm::new(light, &material, highlight, (entry.which, form, false))
 }
 
 fn run(entry: &LightRow, batch: &mut Batch<f64>, light: &ViewLight) -> [[f64; 3]; 2] {
-    let variant = (entry.variant)(Form::Reflection, false);
-    f64::add_light(variant, Level::new(), batch, &term(light));
+    add_light(Level::new(), batch, &term(entry, Form::Reflection, light));
     [batch.diffuse.map(|row| row[0]), batch.specular.map(|row| row[0])]
 }
 
@@ -124,13 +124,12 @@ fn fast_light_is_near_the_reference_and_the_same_on_every_level() {
     let levels = crate::simd::levels();
     for entry in [&AMBIENT, &SUN, &BULB, &SPOT] {
         for form in [Form::Plain, Form::Reflection, Form::HalfVector] {
-            let variant = (entry.variant)(form, false);
             let (mut exact, light) =
                 (scattered(), ViewLight { position: [1.0, 2.0, 3.0], ..light() });
-            f64::add_light(variant, Level::new(), &mut exact, &term(&light));
+            add_light::<f64>(Level::new(), &mut exact, &term(entry, form, &light));
             let pictures = levels.iter().map(|level| {
                 let mut fast = narrow(&scattered());
-                f32::add_light(variant, *level, &mut fast, &term(&light));
+                add_light::<f32>(*level, &mut fast, &term(entry, form, &light));
                 [fast.diffuse, fast.specular]
             });
             let pictures: Vec<_> = pictures.collect();

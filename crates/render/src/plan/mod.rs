@@ -5,7 +5,7 @@
 //! Lights needed by some tiles only are culled tile by tile, after the depths of a tile are known
 //! (`TilePlan`).
 
-pub(crate) mod color_path;
+pub(crate) mod compile;
 mod cover;
 pub(crate) mod features;
 mod helpers;
@@ -23,6 +23,7 @@ mod turning;
 pub(crate) mod uses;
 mod view_lights;
 
+use self::compile::Compiler;
 use self::observer::ObserverSpace;
 use self::planning::{Planner, Planning};
 use self::uses::Notes;
@@ -57,13 +58,13 @@ pub fn plan_everything(shot: &Shot) -> FramePlan {
 pub fn explain_frame(shot: &Shot) -> (FramePlan, Vec<EffectUse>) {
     let Planning { plan, notes, .. } = planned(Rules::Applied, Notes::wanted, shot);
     let mut uses = notes.into_uses();
+    let compiler = Compiler::new(&plan);
     for one in uses.iter_mut().filter(|one| one.effect == Effect::Surfaces && one.state.is_on()) {
         let item = one.on.as_ref().map(|thing| thing.item);
         let Some(draw) = plan.draws.iter().find(|draw| Some(draw.item) == item) else { continue };
         // Parts may have different paths; the first part speaks for all.
         if let Some(pipeline) = draw.part_pipelines.iter().flatten().next() {
-            let path = color_path::color_path(&plan, draw, *pipeline);
-            one.state = EffectState::On(color_path::in_words(path).into());
+            one.state = EffectState::On(compiler.in_words(draw, *pipeline).into());
         }
     }
     (plan, uses)

@@ -48,6 +48,14 @@ pub(crate) struct TileLight<'a> {
     pub(crate) needs_positions: bool,
 }
 
+impl<'a> TileLight<'a> {
+    /// Returns all lights of a surface.
+    pub(crate) fn of(shaded: &'a Shaded) -> Self {
+        let Shaded { needs_positions, .. } = *shaded;
+        Self { stages: shaded.stages(), kept: None, needs_positions }
+    }
+}
+
 impl TilePlan {
     /// Begins a tile. `depths` returns the smallest and largest depth of its triangles, if it has
     /// any.
@@ -80,10 +88,10 @@ impl TilePlan {
         pipeline: u32,
         shaded: &'a Shaded,
     ) -> TileLight<'a> {
-        let stages = shaded.light.as_deref().unwrap_or_default();
-        let needs_positions = shaded.needs_positions;
-        let whole = TileLight { stages, kept: None, needs_positions };
-        let Some(region) = self.region.filter(|_| shaded.tiled) else { return whole };
+        let stages = shaded.stages();
+        let Some(region) = self.region.filter(|_| shaded.tiled) else {
+            return TileLight::of(shaded);
+        };
         let at = pipeline as usize;
         let decided = match self.decided[at] {
             Some(decided) => decided,

@@ -11,18 +11,14 @@ use serde::{Deserialize, Serialize};
 use super::Renderer;
 use crate::cancellation::Cancellation;
 use crate::frame::FramePlan;
-use crate::frame::color_path::ColorPaths;
-use crate::plan::color_path::choose;
 use crate::plan::uses::EffectUse;
 use crate::raster::visibility_buffer::Visible;
 use crate::raster::{depth_format, entries, visibility_buffer};
 use crate::screen::sample_positions::passes;
 use crate::screen::tiles::{BLOCK_PIXELS, TILE, block_at, tiles_of};
-use crate::shading::context::{Around, OffScreen, ShadingContext};
+use crate::shading::context::Prepared;
 use crate::shading::explain::{Asked, explain};
 use crate::shading::interpolated::ShadingNumber;
-use crate::shading::light::Lit;
-use crate::shading::light_terms::LightTerms;
 use crate::shading::painter::bounds_of;
 use crate::shading::pixel_color::{Part, PixelColor};
 use crate::shadow::tracer::Tracer;
@@ -117,25 +113,15 @@ impl Renderer {
 
     fn explain_in<T: ShadingNumber>(&self, plan: &FramePlan, at: [i32; 2]) -> PixelColor {
         // The tables of a frame, prepared for a single pixel.
-        let (mut terms, mut lit) = (LightTerms::<T>::default(), Lit::<T>::default());
-        terms.prepare(plan);
-        lit.prepare(plan);
+        let mut prepared = Prepared::<T>::default();
+        prepared.prepare(plan);
         let (level, frame) = (self.level, &self.frame);
         let tracer = Tracer::new(plan, &self.maps);
-        let tracer = tracer.as_ref();
-        let mut paths = ColorPaths::default();
-        choose(plan, &mut paths);
-        let (lit, terms, paths) = (&lit, &terms, &paths);
-        let off_screen = OffScreen::default();
-        let mut around_terms = LightTerms::<T>::default();
         let around_plan = plan.surroundings.as_deref();
-        around_plan.into_iter().for_each(|around| around_terms.prepare(around));
         let around_tracer = around_plan.and_then(|around| Tracer::new(around, &self.maps));
-        let inputs = (lit, &around_terms, around_tracer.as_ref());
-        let around = Around::new(level, plan, inputs, &off_screen);
-        let around = around.as_ref();
-        let context =
-            ShadingContext { level, plan, frame, lit, terms, faces: None, paths, tracer, around };
+        let around = prepared.around(level, plan, around_tracer.as_ref());
+        let traced = (tracer.as_ref(), around.as_ref());
+        let context = prepared.context(level, (plan, frame), None, traced);
         let [x, y] = at;
         let [columns, _] = tiles_of(plan.size);
         let tile = usize::try_from(y / TILE * columns + x / TILE).expect("not negative");

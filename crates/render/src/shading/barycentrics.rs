@@ -47,7 +47,7 @@ impl<T: Number> Barycentrics<T> {
 }
 
 /// Converts linear coordinates to perspective-correct weights of corners.
-pub(super) struct Weigh<'a, T, const PAGES: usize> {
+pub(super) struct Weigh<'a, T> {
     pub(super) interpolation: Interpolation,
     /// Whether pixels may have centres outside of their triangles: negative coordinates then become
     /// 0, and the sum stays 1.
@@ -57,13 +57,13 @@ pub(super) struct Weigh<'a, T, const PAGES: usize> {
     pub(super) to: &'a mut Barycentrics<T>,
 }
 
-impl<T: Number, const PAGES: usize> Kernel<T> for Weigh<'_, T, PAGES> {
+impl<T: Number> Kernel<T> for Weigh<'_, T> {
     #[inline(always)]
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
         let Self { interpolation, clamps, fragments, attributes, to } = self;
         let (zero, one) = (lanes.lift(0.0), lanes.lift(1.0));
         for at in (0..fragments.len).step_by(M::LANES) {
-            let slots = lanes.slots(&fragments.slots, at);
+            let slots = lanes.slots((&fragments.slots, attributes.count), at);
             let mut linear = [lanes.load(&to.linear[0], at), lanes.load(&to.linear[1], at)];
             // Coordinates outside of 0 to 1 would extrapolate the attributes.
             if clamps {
@@ -75,7 +75,7 @@ impl<T: Number, const PAGES: usize> Kernel<T> for Weigh<'_, T, PAGES> {
                 lanes.store(linear[0], &mut to.linear[0], at);
                 lanes.store(linear[1], &mut to.linear[1], at);
             }
-            let by_w = picked::<M, PAGES>(lanes, &attributes.by_w, slots);
+            let by_w = picked(lanes, &attributes.by_w, slots);
             to.put(interpolation, lanes, at, linear, by_w);
         }
     }

@@ -4,22 +4,16 @@
 //! a list of fragments. Everything else is coloured like other blocks.
 
 use super::context::{Group, ShadingContext, group_of};
-use super::full_blocks::{BlockLight, Blocks, Canvas, Corners, light, mix};
+use super::full_blocks::{BlockLight, Blocks, Canvas, color};
 use super::map_texels::{TexelSource, TexturePlacement, place};
 use super::path_number::PathNumber;
 use super::shader::{Out, Shader};
 use super::texels::PlacedTexture;
 use super::triangle_attributes::TriangleAttributes;
-use crate::frame::color_path::FullPath;
 use crate::frame::draw::Shaded;
+use crate::frame::program::{LightOp, WholePath};
 use crate::screen::clipped_weights::ClippedWeights;
 use crate::simd::Number as _;
-
-/// Returns the weighting of a triangle's corners in this frame.
-fn by<'a>(context: &'a ShadingContext<'_, f32>, cut: Option<&'a ClippedWeights>) -> Corners<'a> {
-    let interpolation = context.plan.variants.interpolation;
-    Corners { cut, interpolation, thresholds: context.terms.thresholds() }
-}
 
 impl<T: PathNumber> Shader<T> {
     /// Colours the pixels of blocks that one triangle covers fully.
@@ -34,9 +28,9 @@ impl<T: PathNumber> Shader<T> {
         let [x, y] = blocks.corner;
         self.fragments.list_full_block(number, [x, y]);
         // The triangle has one colour: it is shaded once, and its blocks are filled.
-        if group.path.full == FullPath::Fill {
+        if group.program.whole == WholePath::Fill {
             let color = self.first_color(&group);
-            self.path_pixels.filled += blocks.pixels();
+            self.path_pixels.fill += blocks.pixels();
             return blocks.each(|block| canvas.fill(canvas.offset_of(block), color));
         }
         // A triangle that is clipped, wide or without area may need lists all the same.
@@ -61,20 +55,17 @@ impl Shader<f32> {
         blocks: Blocks,
         canvas: &mut Canvas<'_>,
     ) -> bool {
-        let Some(shaded) = group.shaded else { return false };
-        let (is_done, pixels) = match group.path.full {
-            FullPath::Corners => {
-                let is_done = self.mix_blocks(group, shaded, blocks, canvas);
-                (is_done, &mut self.path_pixels.corners)
+        let Some(shaded) = group.shaded.filter(|_| group.program.whole == WholePath::One) else {
+            return false;
+        };
+        let is_done = match group.program.light {
+            LightOp::Vertices(_) => self.mix_blocks(group, shaded, blocks, canvas),
+            LightOp::Points | LightOp::Faces | LightOp::None => {
+                self.light_blocks(group, shaded, blocks, canvas)
             }
-            FullPath::Light => {
-                let is_done = self.light_blocks(group, shaded, blocks, canvas);
-                (is_done, &mut self.path_pixels.lit)
-            }
-            FullPath::Fill | FullPath::List => return false,
         };
         if is_done {
-            *pixels += blocks.pixels();
+            self.path_pixels.one += blocks.pixels();
         }
         is_done
     }
@@ -94,13 +85,26 @@ impl Shader<f32> {
         blocks: Blocks,
         canvas: &mut Canvas<'_>,
     ) -> bool {
-        let ShadingContext { level, lit, .. } = *group.context;
+        let ShadingContext { level, terms, lit, .. } = *group.context;
         if self.take(group, true) {
-            let stages = shaded.light.as_deref().unwrap_or_default();
-            self.carry_diffuse(group, stages, lit.tables(group.draw_index, group.pipeline));
+            self.carry_diffuse(group, shaded, lit.tables(group.draw_index, group.pipeline));
         }
         let cut = self.cut_weights(group);
-        mix(level, &self.attributes, blocks, by(group.context, cut.as_ref()), canvas)
+        let Self { attributes, batch, placed, .. } = self;
+        let light = BlockLight {
+            cut: cut.as_ref(),
+            mode: group.context.mode(),
+            thresholds: terms.thresholds(),
+            look: None,
+            tint: [1.0; 3],
+            texture: None,
+            vertex_colors: Some(&attributes.values),
+            lights: None,
+            terms: &[],
+            glow: None,
+            encoding: None,
+        };
+        color(level, attributes, blocks, (light, batch, &mut placed.scratch), canvas)
     }
 
     /// Colours blocks of surfaces that are lit per pixel or unlit, with or without a texture and
@@ -153,7 +157,9 @@ impl Shader<f32> {
             attributes.spread(level);
         }
         let block_light = BlockLight {
-            by: by(context, cut.as_ref()),
+            cut: cut.as_ref(),
+            mode: context.mode(),
+            thresholds: terms.thresholds(),
             look: needs_positions.then_some(look),
             tint: shaded.tint.map(f32::from_f64),
             texture: sampler.as_ref().map(|sampler| PlacedTexture { placement, far, sampler }),
@@ -163,6 +169,6 @@ impl Shader<f32> {
             glow: shaded.extras.emission.is_some().then(|| glow.map(f32::from_f64)),
             encoding: terms.encoding(),
         };
-        light(level, attributes, blocks, (block_light, batch, scratch), canvas)
+        color(level, attributes, blocks, (block_light, batch, scratch), canvas)
     }
 }

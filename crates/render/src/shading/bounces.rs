@@ -22,7 +22,6 @@ use super::map_texels::TexelSource;
 use super::optics::{Media, Meeting, reflectance};
 use super::shader::Shader;
 use super::surroundings::{corners_of, normals_of};
-use crate::frame::color_path::ColorPath;
 use crate::frame::draw::{Draw, Pipeline};
 use crate::frame::extras::SurfaceRays;
 use crate::frame::{Eye, FramePlan};
@@ -306,8 +305,9 @@ impl<T: ShadingNumber> Bounces<T> {
                 Pipeline::Shaded(shaded) => Some(shaded),
                 Pipeline::Flat(_) => None,
             };
-            let (base, end, path) = (0, u32::MAX, ColorPath::default());
-            let group = Group { context, draw, draw_index, base, end, pipeline, shaded, path };
+            let program = context.programs.of(draw_index, pipeline);
+            let (base, end) = (0, u32::MAX);
+            let group = Group { context, draw, draw_index, base, end, pipeline, shaded, program };
             let rays = shaded.and_then(|shaded| shaded.extras.rays.as_ref());
             for list in same.chunks(MOST) {
                 points.clear();
@@ -334,9 +334,9 @@ impl<T: ShadingNumber> Bounces<T> {
         let Self { branches, next, met, sums, .. } = self;
         next.clear();
         let plan = around.context.plan;
-        let most = plan.variants.bounces.count();
+        let most = around.context.mode().bounces;
         let background = plan.background.factors();
-        let is_linear = plan.variants.are_linear();
+        let is_linear = around.context.mode().is_linear();
         let background = if is_linear { background.map(linear) } else { background };
         for (branch, met) in branches.iter().zip(&*met) {
             let Some(met) = met else {

@@ -17,7 +17,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::context::{Group, ShadingContext};
+use super::context::Group;
 use super::interpolate::{Points, mixed};
 use super::interpolated::ShadingNumber;
 use super::map_rows::{Map, MapRows, TangentRows};
@@ -29,7 +29,6 @@ use crate::frame::draw::Draw;
 use crate::frame::extras::Bump;
 use crate::frame::variants::Decoding;
 use crate::lights::{Batch, Rows, columns, load, store, turned};
-use crate::simd::gather::paged;
 use crate::simd::{Kernel, Lanes, Number, Real, Vec3};
 use crate::texture::uv::uvs;
 use marraztu_core::accuracy::Tangents;
@@ -97,30 +96,33 @@ pub(super) fn bend<T: ShadingNumber>(
     bump: &Bump,
     (maps, batch): (&mut MapRows<T>, &mut Batch<T>),
 ) {
-    let ShadingContext { level, plan, .. } = *group.context;
+    let (level, mode) = (group.context.level, group.context.mode());
     let mut source = TexelSource::new(group.context, &bump.map, Decoding::Stored);
-    source.filter = plan.variants.bump_filter();
+    source.filter = mode.bump_filter;
     let what = if bump.gain.is_some() { Texels::Slopes } else { Texels::Colors };
     maps.read(group, points, (Map::Bump, source, what), [1.0; 3]);
     let attributes = points.attributes;
     if attributes.are_new {
-        match plan.variants.tangents {
+        match mode.tangents {
             Tangents::Vertex => maps.tangents.of_vertices(group.draw, attributes),
             Tangents::Pixel => maps.tangents.of_pixels(group.draw, attributes),
         }
     }
     // A negative texture scale reverses the direction of u or v.
     let directions = bump.map.scale.map(|scale| if scale < 0.0 { -1.0 } else { 1.0 });
-    paged!(attributes.count, PAGES => T::run(level, Bend::<T, PAGES> {
-        points,
-        texels: &maps.texels,
-        tangents: &maps.tangents,
-        at_vertices: plan.variants.tangents == Tangents::Vertex,
-        gain: bump.gain,
-        directions,
-        spaces: Spaces::new(group.draw),
-        batch,
-    }));
+    T::run(
+        level,
+        Bend {
+            points,
+            texels: &maps.texels,
+            tangents: &maps.tangents,
+            at_vertices: mode.tangents == Tangents::Vertex,
+            gain: bump.gain,
+            directions,
+            spaces: Spaces::new(group.draw),
+            batch,
+        },
+    );
 }
 
 /// The transforms of normals and tangents to view space, both without scale.
@@ -144,7 +146,7 @@ impl<T: Number> Spaces<T> {
     }
 }
 
-struct Bend<'a, T, const PAGES: usize> {
+struct Bend<'a, T> {
     points: Points<'a, T>,
     texels: &'a Rows<T>,
     tangents: &'a TangentRows<T>,
@@ -158,13 +160,13 @@ struct Bend<'a, T, const PAGES: usize> {
     batch: &'a mut Batch<T>,
 }
 
-impl<T: Number, const PAGES: usize> Kernel<T> for Bend<'_, T, PAGES> {
+impl<T: Number> Kernel<T> for Bend<'_, T> {
     #[inline(always)]
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
         let Self { points, texels, tangents, gain, directions, spaces, batch, .. } = self;
         let Points { fragments, attributes, barycentrics } = points;
         for at in (0..fragments.len).step_by(M::LANES) {
-            let slots = lanes.slots(&fragments.slots, at);
+            let slots = lanes.slots((&fragments.slots, attributes.count), at);
             let unbent = load(lanes, &batch.normal, at);
             let [x, y, z] = load(lanes, texels, at).0;
             let [x, y, z] = match gain {
@@ -179,15 +181,15 @@ impl<T: Number, const PAGES: usize> Kernel<T> for Bend<'_, T, PAGES> {
             // The tangent frame: interpolated from vertices, or from the gradients on the triangle.
             let (tangent, bitangent, normal) = if self.at_vertices {
                 let weights = barycentrics.weights_at(lanes, at);
-                let normal = mixed::<M, PAGES>(lanes, &attributes.values, slots, weights);
+                let normal = mixed(lanes, &attributes.values, slots, weights);
                 let normal = turned(lanes, spaces.normals, normal);
-                let tangent = mixed::<M, PAGES>(lanes, &tangents.vectors, slots, weights);
+                let tangent = mixed(lanes, &tangents.vectors, slots, weights);
                 let tangent = turned(lanes, spaces.tangents, tangent);
-                let sign = lanes.pick::<PAGES>(&tangents.signs, slots);
+                let sign = lanes.pick(&tangents.signs, slots);
                 (tangent, normal.cross(tangent).times(sign), normal)
             } else {
-                let a = picked::<M, PAGES>(lanes, &tangents.vectors[0], slots);
-                let b = picked::<M, PAGES>(lanes, &tangents.vectors[1], slots);
+                let a = picked(lanes, &tangents.vectors[0], slots);
+                let b = picked(lanes, &tangents.vectors[1], slots);
                 (a.cross(unbent).unit(), b.cross(unbent).unit(), unbent)
             };
             let bent = tangent.times(x).plus(bitangent.times(y)).plus(normal.times(z)).unit();

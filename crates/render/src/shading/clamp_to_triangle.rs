@@ -13,7 +13,7 @@ use super::barycentrics::Barycentrics;
 use super::fragments::Fragments;
 use super::triangle_attributes::{AttributeNumber, TriangleAttributes};
 use crate::screen::tiles::BLOCK;
-use crate::simd::gather::{SLOTS, paged};
+use crate::simd::gather::SLOTS;
 use crate::simd::{Kernel, Lanes, Number, Real};
 
 impl<T: AttributeNumber> Barycentrics<T> {
@@ -41,14 +41,6 @@ struct Hold<'a, T> {
 impl<T: Number> Kernel<T> for Hold<'_, T> {
     #[inline(always)]
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
-        paged!(self.attributes.count, PAGES => self.hold::<M, PAGES>(lanes));
-    }
-}
-
-impl<T: Number> Hold<'_, T> {
-    /// Clamps triangles in the first `PAGES` pages of slots.
-    #[inline(always)]
-    fn hold<M: Lanes<Number = T>, const PAGES: usize>(self, lanes: M) {
         let Self { fragments, attributes, origin, to } = self;
         let parts = attributes.grid.parts();
         // Relative to the block, coordinates keep their digits in f32.
@@ -67,8 +59,8 @@ impl<T: Number> Hold<'_, T> {
             let mut place = [x, y];
             // Most groups have no pixel outside and skip the search.
             if lanes.any_more(outside, zero) {
-                let slots = lanes.slots(&fragments.slots, at);
-                let [x0, y0, ux, uy, vx, vy] = picked::<M, PAGES>(lanes, &corners, slots);
+                let slots = lanes.slots((&fragments.slots, attributes.count), at);
+                let [x0, y0, ux, uy, vx, vy] = picked(lanes, &corners, slots);
                 let per_pixel = lanes.lift(f64::from(parts));
                 let d = [(x - left) * per_pixel - x0, (y - top) * per_pixel - y0];
                 let [s, t] = nearest(d, [ux, uy], [vx, vy], [first, second, third]);
@@ -115,18 +107,18 @@ fn corners<T: Number, M: Lanes<Number = T>>(
 
 /// Gathers the corners of the triangles in some slots.
 #[inline(always)]
-fn picked<M: Lanes, const PAGES: usize>(
+fn picked<M: Lanes>(
     lanes: M,
     [a, b, c, d, e, f]: &[[M::Number; SLOTS]; 6],
     slots: M::Slots,
 ) -> [M::R; 6] {
     [
-        lanes.pick::<PAGES>(a, slots),
-        lanes.pick::<PAGES>(b, slots),
-        lanes.pick::<PAGES>(c, slots),
-        lanes.pick::<PAGES>(d, slots),
-        lanes.pick::<PAGES>(e, slots),
-        lanes.pick::<PAGES>(f, slots),
+        lanes.pick(a, slots),
+        lanes.pick(b, slots),
+        lanes.pick(c, slots),
+        lanes.pick(d, slots),
+        lanes.pick(e, slots),
+        lanes.pick(f, slots),
     ]
 }
 

@@ -7,12 +7,15 @@ use fearless_simd::Level;
 
 use super::face_colors::FaceColors;
 use super::fragments::Fragments;
+use super::interpolated::ShadingNumber;
 use super::light::Lit;
 use super::light_terms::LightTerms;
 use super::surroundings::Surroundings;
 use crate::frame::FramePlan;
-use crate::frame::color_path::{ColorPath, ColorPaths};
 use crate::frame::draw::{Draw, Pipeline, Shaded, Stage};
+use crate::frame::program::{Program, Programs};
+use crate::frame::shading_mode::ShadingMode;
+use crate::plan::compile::{compile, compile_around};
 use crate::raster::geometry::ScreenGeometry;
 use crate::shadow::tracer::Tracer;
 
@@ -27,7 +30,7 @@ pub(crate) struct ShadingContext<'a, T> {
     /// The colours of triangles, if they are looked up.
     pub(crate) faces: Option<&'a FaceColors>,
     /// How pixels are coloured.
-    pub(crate) paths: &'a ColorPaths,
+    pub(crate) programs: &'a Programs,
     /// The tracer, if any light casts shadows.
     pub(crate) tracer: Option<&'a Tracer<'a>>,
     /// What rays can meet, if any surface mirrors or refracts.
@@ -43,35 +46,76 @@ pub(crate) struct Around<'a, T> {
     pub(crate) of_draws: Vec<Option<u32>>,
 }
 
-/// Inputs of shading that only pixels read: points that rays meet have no place on the screen.
+/// What shading prepares for the frames of one arithmetic. The memory is kept from frame to frame.
 #[derive(Debug, Default)]
-pub(crate) struct OffScreen {
-    frame: ScreenGeometry,
-    paths: ColorPaths,
+pub(crate) struct Prepared<T> {
+    programs: Programs,
+    terms: LightTerms<T>,
+    lit: Lit<T>,
+    /// The same for the surroundings, if rays can meet them.
+    around_programs: Programs,
+    around_terms: LightTerms<T>,
+    /// Points that rays meet have no place on the screen.
+    off_screen: ScreenGeometry,
 }
 
-impl<'a, T> Around<'a, T> {
-    /// Prepares the surroundings of a picture for rays, if it casts any.
-    pub(crate) fn new(
+impl<T: ShadingNumber> Prepared<T> {
+    /// Prepares a frame.
+    pub(crate) fn prepare(&mut self, plan: &FramePlan) {
+        let Self { programs, terms, lit, around_programs, around_terms, off_screen: _ } = self;
+        compile(plan, programs);
+        terms.prepare(plan, &programs.mode);
+        lit.prepare(plan, programs);
+        if let Some(around) = &plan.surroundings {
+            compile_around(around, around_programs);
+            around_terms.prepare(around, &around_programs.mode);
+        }
+    }
+
+    /// Returns whether the colours of faces are looked up.
+    pub(crate) const fn looks_up_faces(&self) -> bool {
+        self.programs.looks_up_faces
+    }
+
+    /// Returns what rays can meet, if the frame casts any.
+    pub(crate) fn around<'a>(
+        &'a self,
         level: Level,
         picture: &'a FramePlan,
-        (lit, terms, tracer): (&'a Lit<T>, &'a LightTerms<T>, Option<&'a Tracer<'a>>),
-        OffScreen { frame, paths }: &'a OffScreen,
-    ) -> Option<Self> {
+        tracer: Option<&'a Tracer<'a>>,
+    ) -> Option<Around<'a, T>> {
         let plan = picture.surroundings.as_deref()?;
         let items = plan.draws.iter().map(|draw| draw.item);
         let of_items: BTreeMap<_, _> = items.zip(0_u32..).collect();
         let surroundings = Surroundings::new(plan);
         let own = |draw: &Draw| surroundings.thing_of(*of_items.get(&draw.item)?);
         let of_draws = picture.draws.iter().map(own).collect();
-        let (faces, around) = (None, None);
+        let Self { around_programs: programs, around_terms: terms, lit, .. } = self;
+        let (frame, faces, around) = (&self.off_screen, None, None);
         let context =
-            ShadingContext { level, plan, frame, lit, terms, faces, paths, tracer, around };
-        Some(Self { surroundings, context, of_draws })
+            ShadingContext { level, plan, frame, lit, terms, faces, programs, tracer, around };
+        Some(Around { surroundings, context, of_draws })
+    }
+
+    /// Returns the inputs of shading a frame.
+    pub(crate) fn context<'a>(
+        &'a self,
+        level: Level,
+        (plan, frame): (&'a FramePlan, &'a ScreenGeometry),
+        faces: Option<&'a FaceColors>,
+        (tracer, around): (Option<&'a Tracer<'a>>, Option<&'a Around<'a, T>>),
+    ) -> ShadingContext<'a, T> {
+        let Self { programs, terms, lit, .. } = self;
+        ShadingContext { level, plan, frame, lit, terms, faces, programs, tracer, around }
     }
 }
 
 impl<'a, T> ShadingContext<'a, T> {
+    /// Returns the choices that hold for all surfaces.
+    pub(crate) const fn mode(&self) -> &'a ShadingMode {
+        &self.programs.mode
+    }
+
     /// Returns the tracer for a draw, and the draw's own caster. `None` if the draw receives no
     /// shadows.
     pub(crate) fn tracer_of(&self, draw: u32) -> Option<(&'a Tracer<'a>, u32)> {
@@ -93,7 +137,7 @@ pub(crate) struct Group<'a, T> {
     pub(crate) pipeline: u32,
     /// The surface, if it is more than one colour.
     pub(crate) shaded: Option<&'a Shaded>,
-    pub(crate) path: ColorPath,
+    pub(crate) program: &'a Program,
 }
 
 impl<'a, T> Group<'a, T> {
@@ -119,9 +163,9 @@ pub(crate) fn group_of<'a, T>(context: &'a ShadingContext<'_, T>, number: u32) -
         Pipeline::Shaded(shaded) => Some(shaded),
         Pipeline::Flat(_) => None,
     };
-    let path = context.paths.of(draw_index, pipeline);
+    let program = context.programs.of(draw_index, pipeline);
     let (base, end) = (start.number, start.end);
-    Group { context, draw, draw_index, base, end, pipeline, shaded, path }
+    Group { context, draw, draw_index, base, end, pipeline, shaded, program }
 }
 
 /// Returns the group of all fragments of a list, if they belong to one.

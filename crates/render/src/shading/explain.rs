@@ -17,12 +17,13 @@ use super::pixel_color::{Part, PixelColor, SurfacePoint, Term};
 use super::shader::Shader;
 use super::shadows::{BatchShadows, place_faces};
 use crate::frame::Eye;
-use crate::frame::draw::{Back, Shaded, Stage};
+use crate::frame::draw::{Back, Shaded};
+use crate::frame::program::LightOp;
 use crate::lights::Batch;
 use crate::raster::visibility_buffer::{Visible, seen};
 use crate::screen::coverage::PixelBox;
 use crate::shadow::rays::{Origins, RayScratch};
-use marraztu_core::accuracy::{LightAt, Rounding};
+use marraztu_core::accuracy::Rounding;
 use marraztu_core::base::color;
 
 /// The pixel of a tile to be explained.
@@ -51,7 +52,7 @@ pub(crate) fn explain<T: ShadingNumber>(
         return whole;
     }
     // Only clamped colours are blended, as in the picture, and all in linear light or none.
-    let linear = context.plan.variants.are_linear();
+    let linear = context.mode().is_linear();
     make_blendable(&mut whole, linear);
     // Alpha blending scales the terms of a layer by its opacity, and all terms behind it by the
     // rest.
@@ -76,7 +77,7 @@ pub(crate) fn explain<T: ShadingNumber>(
     // Other blending methods have a different mean; the difference is a separate term, unless it
     // may come from rounding to a byte and from the fixed-point numbers of blended colours.
     let most = 0.001
-        + match context.plan.variants.rounding {
+        + match context.mode().rounding {
             Rounding::Nearest => 0.5,
             Rounding::Truncated | Rounding::Dithered => 1.0,
         };
@@ -169,14 +170,10 @@ impl<T: ShadingNumber> Point<'_, T> {
         surface.own = if textured { texel } else { tint };
         surface.light_at = shaded.light.is_some().then_some(plan.light_at);
         // The terms depend on where light is computed.
-        let (mut terms, mut color) = match (&shaded.light, plan.light_at) {
-            (None, _) => (vec![Term::new(Part::Unlit, surface.own)], surface.own),
-            (Some(stages), LightAt::Vertex) => {
-                self.of_corners(&surface, textured.then_some(of_all), stages)
-            }
-            (Some(stages), LightAt::Pixel | LightAt::Sample | LightAt::Face) => {
-                self.of_lights(&mut surface, (shaded, stages), &drawn)
-            }
+        let (mut terms, mut color) = match self.group.program.light {
+            LightOp::None => (vec![Term::new(Part::Unlit, surface.own)], surface.own),
+            LightOp::Vertices(_) => self.of_corners(&surface, textured.then_some(of_all), shaded),
+            LightOp::Points | LightOp::Faces => self.of_lights(&mut surface, shaded, &drawn),
         };
         let glows = shaded.extras.glows().next().is_some();
         let sees = shaded.extras.rays.is_some();
@@ -192,7 +189,7 @@ impl<T: ShadingNumber> Point<'_, T> {
         }
         let sum = terms.iter().fold([0.0; 3], |sum, term| plus(sum, term.value));
         let rounding = [0, 1, 2].map(|i| color[i] - sum[i]);
-        let linear = plan.variants.are_linear();
+        let linear = self.group.context.mode().is_linear();
         let (at, surface) = (self.at, Some(surface));
         (PixelColor { at, drawn: None, surface, terms, rounding, color, linear, bytes }, opacity)
     }
@@ -206,7 +203,7 @@ impl<T: ShadingNumber> Point<'_, T> {
         shader.attributes.forget();
         shader.take(group, true);
         let Shader { fragments, attributes, barycentrics, batch, .. } = &mut **shader;
-        barycentrics.find(level, fragments, attributes, (plan, group.draw));
+        barycentrics.find(level, fragments, attributes, group);
         attributes.carry_normals(group.draw);
         attributes.spread(level);
         batch.len = 1;
@@ -240,14 +237,15 @@ impl<T: ShadingNumber> Point<'_, T> {
     fn of_lights(
         &mut self,
         surface: &mut SurfacePoint,
-        (shaded, stages): (&Shaded, &[Stage]),
+        shaded: &Shaded,
         drawn: &Batch<T>,
     ) -> (Vec<Term>, [f64; 3]) {
         let Self { group, shader, .. } = self;
+        let stages = shaded.stages();
         let context = group.context;
         let ShadingContext { level, plan, lit, terms: of, .. } = *context;
         let kept = shader.tile.light(plan, group.pipeline, shaded).kept.map(<[u32]>::to_vec);
-        let by_face = plan.light_at == LightAt::Face;
+        let by_face = group.program.light == LightOp::Faces;
         // Flat shading: the light and the normal belong to the centre of the polygon.
         if by_face {
             let Shader { attributes, batch, .. } = &mut **shader;
@@ -328,7 +326,7 @@ impl<T: ShadingNumber> Point<'_, T> {
         &mut self,
         surface: &SurfacePoint,
         textured: Option<[[f64; 3]; 2]>,
-        stages: &[Stage],
+        shaded: &Shaded,
     ) -> (Vec<Term>, [f64; 3]) {
         let Self { group, shader, .. } = self;
         let ShadingContext { level, lit, .. } = *group.context;
@@ -345,7 +343,7 @@ impl<T: ShadingNumber> Point<'_, T> {
         }
         // Without a texture, tables hold final colours, which are interpolated again here.
         let tables = lit.tables(group.draw_index, group.pipeline);
-        shader.carry_diffuse(group, stages, tables);
+        shader.carry_diffuse(group, shaded, tables);
         let Shader { fragments, attributes, barycentrics, batch, .. } = &mut **shader;
         let points = Points { fragments, attributes, barycentrics };
         mix(level, points, &attributes.values, Mixed::Rows(&mut batch.diffuse));

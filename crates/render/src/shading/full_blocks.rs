@@ -13,6 +13,7 @@ use super::interpolate::{CornerValues, Look, depth_between};
 use super::quantize::reflected;
 use super::texels::{OfFirst, PlacedTexture, TexelScratch};
 use super::triangle_attributes::TriangleAttributes;
+use crate::frame::shading_mode::ShadingMode;
 use crate::lights::{Batch, LightTerm, load, set, store};
 use crate::plan::tile::TileLight;
 use crate::screen::clipped_weights::ClippedWeights;
@@ -100,13 +101,6 @@ const COLUMNS: [f64; ROW] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 const ACROSS: [i32; 16] = [0, 1, 2, 3, 4, 5, 6, 7, 0, 1, 2, 3, 4, 5, 6, 7];
 const DOWN: [i32; 16] = [0, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1, 1, 1, 1];
 
-/// Computes the second and third barycentric coordinate of pixels in one triangle, linear on the
-/// screen.
-pub(crate) trait Linear<S: Simd>: Copy {
-    /// Computes the coordinates of a whole block, two rows at a time, from its first pixel.
-    fn block(&self, simd: S, first: [i32; 2]) -> [[f32x16<S>; 2]; PAIRS];
-}
-
 /// A triangle with edge functions of at most 31 bits at its pixels.
 #[derive(Clone, Copy, Debug)]
 struct Narrow<S: Simd> {
@@ -140,9 +134,10 @@ impl<S: Simd> Narrow<S> {
     }
 }
 
-impl<S: Simd> Linear<S> for Narrow<S> {
+impl<S: Simd> Narrow<S> {
+    /// Computes the coordinates of a whole block, two rows at a time, from its first pixel.
     #[inline(always)]
-    fn block(&self, _: S, [x, y]: [i32; 2]) -> [[f32x16<S>; 2]; PAIRS] {
+    fn block(&self, [x, y]: [i32; 2]) -> [[f32x16<S>; 2]; PAIRS] {
         let pair = |pair| [x, y + 2 * pair];
         [
             [self.at(0, pair(0)), self.at(1, pair(0))],
@@ -212,10 +207,11 @@ impl<'a, S: Simd> Wide<'a, S> {
     }
 }
 
-impl<S: Simd> Linear<S> for Wide<'_, S> {
+impl<S: Simd> Wide<'_, S> {
+    /// Computes the coordinates of a whole block, two rows at a time, from its first pixel.
     #[inline(always)]
     #[expect(clippy::cast_precision_loss, reason = "they have fewer than 53 bits")]
-    fn block(&self, _: S, [x, y]: [i32; 2]) -> [[f32x16<S>; 2]; PAIRS] {
+    pub(crate) fn block(&self, [x, y]: [i32; 2]) -> [[f32x16<S>; 2]; PAIRS] {
         let [_, e, f] = self.triangle.edges_at(x, y);
         let e0 = [self.gains[0][0] + e as f64, self.gains[0][1] + e as f64];
         let f0 = [self.gains[1][0] + f as f64, self.gains[1][1] + f as f64];
@@ -235,43 +231,43 @@ impl<S: Simd> Linear<S> for Wide<'_, S> {
 /// The perspective-correct weights of the second and third corner, and w.
 type Weighted<S> = ([f32x16<S>; 2], f32x16<S>);
 
-/// Computes the perspective-correct weights of pixels in one triangle.
-trait Points<S: Simd>: Copy {
+/// A triangle, as its pixels are weighted.
+enum Points<'a, S: Simd> {
+    /// Corners have no place on the screen: weights are computed one row at a time.
+    Clipped(&'a ClippedWeights),
+    /// Edge functions in 32-bit integers.
+    Narrow(Narrow<S>),
+    /// Edge functions in 64-bit integers and f64.
+    Wide(Wide<'a, S>),
+}
+
+impl<S: Simd> Points<'_, S> {
     /// Computes the weights of a whole block, two rows at a time, from its first pixel.
-    fn block(&self, simd: S, first: [i32; 2]) -> [Weighted<S>; PAIRS];
-}
-
-/// The weights from linear coordinates and 1/w of each corner.
-#[derive(Clone, Copy)]
-struct Inside<S: Simd, L> {
-    interpolation: Interpolation,
-    linear: L,
-    by_w: Vec3<f32x16<S>>,
-}
-
-impl<S: Simd, L: Linear<S>> Points<S> for Inside<S, L> {
     #[inline(always)]
-    fn block(&self, simd: S, first: [i32; 2]) -> [Weighted<S>; PAIRS] {
-        let [a, b, c, d] = self.linear.block(simd, first);
-        let lanes = Sixteen(simd);
+    fn block(
+        &self,
+        lanes: Sixteen<S>,
+        (interpolation, by_w): (Interpolation, Vec3<f32x16<S>>),
+        first: [i32; 2],
+    ) -> [Weighted<S>; PAIRS] {
+        let [a, b, c, d] = match self {
+            Self::Narrow(narrow) => narrow.block(first),
+            Self::Wide(wide) => wide.block(first),
+            Self::Clipped(of) => {
+                let [x, y] = first;
+                return [
+                    two_rows(lanes.0, of, [x, y]),
+                    two_rows(lanes.0, of, [x, y + 2]),
+                    two_rows(lanes.0, of, [x, y + 4]),
+                    two_rows(lanes.0, of, [x, y + 6]),
+                ];
+            }
+        };
         [
-            weighed(self.interpolation, lanes, a, self.by_w),
-            weighed(self.interpolation, lanes, b, self.by_w),
-            weighed(self.interpolation, lanes, c, self.by_w),
-            weighed(self.interpolation, lanes, d, self.by_w),
-        ]
-    }
-}
-
-/// The weights of a clipped triangle.
-impl<S: Simd> Points<S> for &ClippedWeights {
-    #[inline(always)]
-    fn block(&self, simd: S, [x, y]: [i32; 2]) -> [Weighted<S>; PAIRS] {
-        [
-            two_rows(simd, self, [x, y]),
-            two_rows(simd, self, [x, y + 2]),
-            two_rows(simd, self, [x, y + 4]),
-            two_rows(simd, self, [x, y + 6]),
+            weighed(interpolation, lanes, a, by_w),
+            weighed(interpolation, lanes, b, by_w),
+            weighed(interpolation, lanes, c, by_w),
+            weighed(interpolation, lanes, d, by_w),
         ]
     }
 }
@@ -283,69 +279,14 @@ fn two_rows<S: Simd>(simd: S, of: &ClippedWeights, [x, y]: [i32; 2]) -> Weighted
     ([b.narrow(b_below), c.narrow(c_below)], w.narrow(w_below))
 }
 
-/// Evaluates an expression with the [`Points`] of the first triangle. Returns false for a triangle
-/// without area, which has no points.
-macro_rules! with_points {
-    ($level:expr, $attributes:expr, $by:expr, $simd:ident, $points:ident => $what:expr) => {{
-        let attributes: &TriangleAttributes<f32> = $attributes;
-        // Clipped: corners have no screen position, so weights are computed one row at a time.
-        if let Some($points) = $by.cut {
-            dispatch!($level, $simd => $what);
-            true
-        } else if attributes.wide & 1 == 0 {
-            // Narrow: edge functions in 32-bit integers.
-            dispatch!($level, $simd => {
-                let by_w = of_first(Sixteen($simd), &attributes.by_w);
-                let linear = Narrow::new($simd, attributes);
-                let $points = Inside { interpolation: $by.interpolation, linear, by_w };
-                $what
-            });
-            true
-        } else if let Some(triangle) = &Triangle::on(attributes.grid, attributes.corners(0)) {
-            // Wide: edge functions in 64-bit integers and f64.
-            dispatch!($level, $simd => {
-                let by_w = of_first(Sixteen($simd), &attributes.by_w);
-                let linear = Wide::new($simd, triangle);
-                let $points = Inside { interpolation: $by.interpolation, linear, by_w };
-                $what
-            });
-            true
-        } else {
-            false
-        }
-    }};
-}
-
-/// The weighting of a triangle's corners.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Corners<'a> {
-    /// The weights, if the triangle is clipped.
-    pub(crate) cut: Option<&'a ClippedWeights>,
-    /// The interpolation, if it is not clipped.
-    pub(crate) interpolation: Interpolation,
-    /// The rounding thresholds of a block's pixels.
-    pub(crate) thresholds: &'a [f32; BLOCK_PIXELS],
-}
-
-/// Interpolates the colours of the first triangle in blocks that it covers fully. Does nothing and
-/// returns false if the triangle has no area.
-pub(crate) fn mix(
-    level: Level,
-    attributes: &TriangleAttributes<f32>,
-    blocks: Blocks,
-    by: Corners<'_>,
-    canvas: &mut Canvas<'_>,
-) -> bool {
-    with_points!(level, attributes, by, simd, points => {
-        mixed(simd, attributes, points, blocks, (by.thresholds, &mut *canvas));
-    })
-}
-
 /// The lighting of fully covered blocks.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct BlockLight<'a> {
-    /// The weighting of the triangle's corners.
-    pub(crate) by: Corners<'a>,
+    /// The weights of the triangle, if it is clipped.
+    pub(crate) cut: Option<&'a ClippedWeights>,
+    pub(crate) mode: &'a ShadingMode,
+    /// The rounding thresholds of a block's pixels.
+    pub(crate) thresholds: &'a [f32; BLOCK_PIXELS],
     /// The conversion from pixels to positions and normals; `None` if no light reads them.
     pub(crate) look: Option<Look<f32>>,
     /// The colour of the surface itself.
@@ -364,32 +305,48 @@ pub(crate) struct BlockLight<'a> {
     pub(crate) encoding: Option<&'a Encoding>,
 }
 
-/// Lights blocks that the first triangle, with normals at its corners, covers fully. Does nothing
+/// Colours blocks that the first triangle, with normals at its corners, covers fully. Does nothing
 /// and returns false if the triangle has no area.
-pub(crate) fn light(
+pub(crate) fn color(
     level: Level,
     attributes: &TriangleAttributes<f32>,
     blocks: Blocks,
     (light, batch, scratch): (BlockLight<'_>, &mut Batch<f32>, &mut TexelScratch),
     canvas: &mut Canvas<'_>,
 ) -> bool {
-    with_points!(level, attributes, light.by, simd, points => {
-        lit(simd, attributes, points, blocks, (light, &mut *batch, &mut *scratch), canvas);
-    })
+    let is_wide = light.cut.is_none() && attributes.wide & 1 != 0;
+    let wide = match is_wide {
+        true => Triangle::on(attributes.grid, attributes.corners(0)),
+        false => None,
+    };
+    // A wide triangle may have no area.
+    if is_wide && wide.is_none() {
+        return false;
+    }
+    dispatch!(level, simd => {
+        let points = match (light.cut, &wide) {
+            (Some(cut), _) => Points::Clipped(cut),
+            (None, Some(triangle)) => Points::Wide(Wide::new(simd, triangle)),
+            (None, None) => Points::Narrow(Narrow::new(simd, attributes)),
+        };
+        colored(simd, attributes, &points, blocks, (light, (batch, scratch)), canvas);
+    });
+    true
 }
 
 #[inline(always)]
-fn lit<S: Simd>(
+fn colored<S: Simd>(
     simd: S,
     attributes: &TriangleAttributes<f32>,
-    points: impl Points<S>,
+    points: &Points<'_, S>,
     blocks: Blocks,
-    (light, batch, scratch): (BlockLight<'_>, &mut Batch<f32>, &mut TexelScratch),
+    (light, (batch, scratch)): (BlockLight<'_>, (&mut Batch<f32>, &mut TexelScratch)),
     canvas: &mut Canvas<'_>,
 ) {
     let lanes = Sixteen(simd);
-    let BlockLight { by, look, tint, texture, vertex_colors, lights, terms, .. } = light;
-    let BlockLight { glow, encoding, .. } = light;
+    let BlockLight { thresholds, look, tint, texture, vertex_colors, lights, terms, .. } = light;
+    let BlockLight { glow, encoding, mode, .. } = light;
+    let by = (mode.interpolation, of_first(lanes, &attributes.by_w));
     let z = of_first(lanes, &attributes.z);
     let corners = corners(lanes, &attributes.values);
     let tint = set(lanes, tint);
@@ -407,7 +364,7 @@ fn lit<S: Simd>(
             let [x, y] = [left + column, top + row];
             // First pass over the block: positions, normals, texture positions and vertex colours.
             if look.is_some() || is_colored {
-                let pairs = points.block(simd, [x, y]);
+                let pairs = points.block(lanes, by, [x, y]);
                 for ((pair, point), y) in pairs.into_iter().enumerate().zip((y..).step_by(2)) {
                     let (weights, w) = point;
                     if let Some(look) = &look {
@@ -464,7 +421,7 @@ fn lit<S: Simd>(
                     color = finished(lanes, color, glow, encoding);
                 }
                 // The dithering pattern has the size of a block, so thresholds repeat.
-                let threshold = lanes.load(by.thresholds, 16 * pair);
+                let threshold = lanes.load(thresholds, 16 * pair);
                 lanes.store_pixels_by(color, threshold, &mut pixels, 0);
                 canvas.put(at, &pixels);
                 at += 2 * canvas.stride;
@@ -503,32 +460,4 @@ fn of_first<S: Simd>(lanes: Sixteen<S>, rows: &[[f32; SLOTS]; 3]) -> Vec3<f32x16
 fn corners<S: Simd>(lanes: Sixteen<S>, values: &CornerValues<f32>) -> [Vec3<f32x16<S>>; 3] {
     let [a, b, c] = values;
     [of_first(lanes, a), of_first(lanes, b), of_first(lanes, c)]
-}
-
-#[inline(always)]
-fn mixed<S: Simd>(
-    simd: S,
-    attributes: &TriangleAttributes<f32>,
-    points: impl Points<S>,
-    blocks: Blocks,
-    (thresholds, canvas): (&[f32; BLOCK_PIXELS], &mut Canvas<'_>),
-) {
-    let lanes = Sixteen(simd);
-    let corners = corners(lanes, &attributes.values);
-    let [left, top] = blocks.corner;
-    blocks.each(
-        #[inline(always)]
-        |[column, row]| {
-            let mut at = canvas.offset([column as usize, row as usize]);
-            // Weights for the whole block, then two rows of pixels at a time.
-            let pairs = points.block(simd, [left + column, top + row]);
-            for (pair, (weights, _)) in pairs.into_iter().enumerate() {
-                let mut pixels = [0; 16];
-                let threshold = lanes.load(thresholds, 16 * pair);
-                lanes.store_pixels_by(between(corners, weights), threshold, &mut pixels, 0);
-                canvas.put(at, &pixels);
-                at += 2 * canvas.stride;
-            }
-        },
-    );
 }

@@ -7,21 +7,18 @@
 use fearless_simd::Level;
 use glam::DVec3;
 
-use super::bumps::bend;
 use super::context::Group;
 use super::interpolate::{Points, mixed};
 use super::interpolated::ShadingNumber;
-use super::light::run;
-use super::lit_points::place_points;
 use super::quantize::{SurfaceColor, reflected};
 use super::shader::Shader;
-use super::shadows::BatchShadows;
+use super::surface::Origin;
 use crate::accel::Accelerated as _;
-use crate::frame::draw::{Back, Draw, Pipeline, Shaded, Stage};
+use crate::frame::draw::{Back, Draw, Pipeline};
+use crate::frame::program::LightOp;
 use crate::lights::{Batch, Rows, columns, load, store, turned};
 use crate::rays::{Corners, Hit};
-use crate::shadow::rays::Origins;
-use crate::simd::gather::{SLOTS, paged};
+use crate::simd::gather::SLOTS;
 use crate::simd::{BATCH, Kernel, Lanes, Number, Vec3};
 use crate::texture::placement::Steps;
 use marraztu_core::base::color::{Color, linear};
@@ -83,15 +80,15 @@ impl<T: ShadingNumber> Shader<T> {
         to: &mut Rows<T>,
     ) {
         let context = group.context;
-        let linear_values = context.plan.variants.are_linear();
+        let linear_values = context.mode().is_linear();
         let level = context.level;
         match &context.plan.pipelines[group.pipeline as usize] {
             Pipeline::Flat(color) => fill(to, *color, linear_values),
             Pipeline::Shaded(shaded) => {
                 self.take_points(group, points);
-                let lit = shaded.light.as_deref();
-                if let Some(stages) = lit {
-                    self.light_points(group, (shaded, stages), points);
+                let lit = group.program.light == LightOp::Points;
+                if lit {
+                    self.light_points(group, shaded, Origin::Hits(points));
                 }
                 self.batch.len = points.len();
                 let glows = self.surface_light(group, shaded);
@@ -101,7 +98,7 @@ impl<T: ShadingNumber> Shader<T> {
                     false => SurfaceColor::Tint(shaded.tint.map(T::from_f64)),
                 };
                 let glow = glows.then_some(&maps.glow);
-                T::run(level, Radiance { batch, lit: lit.is_some(), own, glow, to });
+                T::run(level, Radiance { batch, lit, own, glow, to });
             }
         }
         if group.draw.back == Back::Red {
@@ -140,39 +137,6 @@ impl<T: ShadingNumber> Shader<T> {
         }
         batch.len = points.len();
     }
-
-    /// Lights a list of points.
-    fn light_points(
-        &mut self,
-        group: &Group<'_, T>,
-        (shaded, stages): (&Shaded, &[Stage]),
-        points: &[Point],
-    ) {
-        let context = group.context;
-        let level = context.level;
-        if let Some(map) = &shaded.extras.exponent {
-            self.map_exponents(group, map);
-        }
-        let Self { fragments, attributes, barycentrics, batch, maps, rays, .. } = self;
-        if shaded.needs_positions {
-            attributes.carry_normals(group.draw);
-            attributes.spread(level);
-            let of = Points { fragments, attributes, barycentrics };
-            place_normals(level, group.draw, of, batch);
-            if let Some(bump) = &shaded.extras.bump {
-                bend(group, of, bump, (maps, batch));
-            }
-        }
-        let tracer = context.tracer_of(group.draw_index).filter(|_| shaded.needs_positions);
-        let mut place = |origins: &mut Origins| {
-            if let Some(tracer) = tracer {
-                let hits = points.iter().map(|point| (point.hit.triangle, point.hit.weights));
-                place_points(group, tracer, (hits, attributes.back), origins);
-            }
-        };
-        let shadows = tracer.map(|(tracer, _)| BatchShadows::new(tracer, rays, &mut place));
-        run(stages, context.terms.of(group.pipeline), level, batch, shadows);
-    }
 }
 
 /// Sets all light to a colour.
@@ -183,32 +147,31 @@ fn fill<T: Number>(to: &mut Rows<T>, color: Color, linear_values: bool) {
 }
 
 /// Interpolates the normals of a list of points.
-fn place_normals<T: Number>(
+pub(super) fn place_normals<T: Number>(
     level: Level,
     draw: &Draw,
     points: Points<'_, T>,
     batch: &mut Batch<T>,
 ) {
     let normals = columns(draw.view_from_normal);
-    let count = points.attributes.count;
-    paged!(count, PAGES => T::run(level, PlaceNormals::<T, PAGES> { points, normals, batch }));
+    T::run(level, PlaceNormals { points, normals, batch });
 }
 
-struct PlaceNormals<'a, T, const PAGES: usize> {
+struct PlaceNormals<'a, T> {
     points: Points<'a, T>,
     /// The columns of the matrix that transforms normals to view space.
     normals: [[T; 3]; 3],
     batch: &'a mut Batch<T>,
 }
 
-impl<T: Number, const PAGES: usize> Kernel<T> for PlaceNormals<'_, T, PAGES> {
+impl<T: Number> Kernel<T> for PlaceNormals<'_, T> {
     #[inline(always)]
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
         let Self { points: Points { fragments, attributes, barycentrics }, normals, batch } = self;
         for at in (0..fragments.len).step_by(M::LANES) {
-            let slots = lanes.slots(&fragments.slots, at);
+            let slots = lanes.slots((&fragments.slots, attributes.count), at);
             let weights = barycentrics.weights_at(lanes, at);
-            let normal = mixed::<M, PAGES>(lanes, &attributes.values, slots, weights);
+            let normal = mixed(lanes, &attributes.values, slots, weights);
             store(lanes, turned(lanes, normals, normal).unit(), &mut batch.normal, at);
         }
     }

@@ -18,7 +18,7 @@ use crate::frame::{Eye, FramePlan, Viewport};
 use crate::lights::{Batch, Rows, Sample, columns, load, store, turned};
 use crate::screen::coverage::SUBPIXELS;
 use crate::screen::perspective::between;
-use crate::simd::gather::{SLOTS, paged};
+use crate::simd::gather::SLOTS;
 use crate::simd::{BATCH, Kernel, Lanes, Number, Real, Vec3};
 
 /// Three numbers at the corners of some triangles: the first corner's numbers, and the differences
@@ -35,15 +35,15 @@ pub(crate) struct Points<'a, T> {
 
 /// Interpolates attributes at some pixels.
 #[inline(always)]
-pub(super) fn mixed<M: Lanes, const PAGES: usize>(
+pub(super) fn mixed<M: Lanes>(
     lanes: M,
     rows: &CornerValues<M::Number>,
     slots: M::Slots,
     weights: [M::R; 2],
 ) -> Vec3<M::R> {
-    let a = picked::<M, PAGES>(lanes, &rows[0], slots);
-    let b = picked::<M, PAGES>(lanes, &rows[1], slots);
-    let c = picked::<M, PAGES>(lanes, &rows[2], slots);
+    let a = picked(lanes, &rows[0], slots);
+    let b = picked(lanes, &rows[1], slots);
+    let c = picked(lanes, &rows[2], slots);
     between([a, b, c], weights)
 }
 
@@ -65,22 +65,22 @@ pub(crate) fn mix<T: Number>(
     values: &CornerValues<T>,
     to: Mixed<'_, T>,
 ) {
-    paged!(points.attributes.count, PAGES => T::run(level, Mix::<T, PAGES> { points, values, to }));
+    T::run(level, Mix { points, values, to });
 }
 
-struct Mix<'a, T, const PAGES: usize> {
+struct Mix<'a, T> {
     points: Points<'a, T>,
     values: &'a CornerValues<T>,
     to: Mixed<'a, T>,
 }
 
-impl<T: Number, const PAGES: usize> Kernel<T> for Mix<'_, T, PAGES> {
+impl<T: Number> Kernel<T> for Mix<'_, T> {
     #[inline(always)]
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
-        let Self { points: Points { fragments, barycentrics, .. }, values, mut to } = self;
+        let Self { points: Points { fragments, attributes, barycentrics }, values, mut to } = self;
         for at in (0..fragments.len).step_by(M::LANES) {
-            let slots = lanes.slots(&fragments.slots, at);
-            let value = mixed::<M, PAGES>(lanes, values, slots, barycentrics.weights_at(lanes, at));
+            let slots = lanes.slots((&fragments.slots, attributes.count), at);
+            let value = mixed(lanes, values, slots, barycentrics.weights_at(lanes, at));
             match &mut to {
                 Mixed::Rows(rows) => store(lanes, value, rows, at),
                 Mixed::Product(rows) => {
@@ -102,16 +102,9 @@ pub(crate) fn surface_samples<T: Number>(
     points: Points<'_, T>,
     batch: &mut Batch<T>,
 ) {
-    let count = points.attributes.count;
     match points.fragments.shared {
-        true => paged!(count, PAGES => T::run(
-            level,
-            SurfaceSamples::<T, PAGES, true> { points, batch, look },
-        )),
-        false => paged!(count, PAGES => T::run(
-            level,
-            SurfaceSamples::<T, PAGES, false> { points, batch, look },
-        )),
+        true => T::run(level, SurfaceSamples::<T, true> { points, batch, look }),
+        false => T::run(level, SurfaceSamples::<T, false> { points, batch, look }),
     }
 }
 
@@ -175,22 +168,20 @@ impl<T: Number> Look<T> {
     }
 }
 
-struct SurfaceSamples<'a, T, const PAGES: usize, const SHARED: bool> {
+struct SurfaceSamples<'a, T, const SHARED: bool> {
     points: Points<'a, T>,
     batch: &'a mut Batch<T>,
     look: Look<T>,
 }
 
-impl<T: Number, const PAGES: usize, const SHARED: bool> Kernel<T>
-    for SurfaceSamples<'_, T, PAGES, SHARED>
-{
+impl<T: Number, const SHARED: bool> Kernel<T> for SurfaceSamples<'_, T, SHARED> {
     #[inline(always)]
     fn run<M: Lanes<Number = T>>(self, lanes: M) {
         let Self { points: Points { fragments, attributes, barycentrics }, batch, look } = self;
         for at in (0..fragments.len).step_by(M::LANES) {
-            let slots = lanes.slots(&fragments.slots, at);
+            let slots = lanes.slots((&fragments.slots, attributes.count), at);
             let weights = barycentrics.weights_at(lanes, at);
-            let normal = mixed::<M, PAGES>(lanes, &attributes.values, slots, weights);
+            let normal = mixed(lanes, &attributes.values, slots, weights);
             let half = lanes.lift(0.5);
             // A shared pixel is lit where its triangle was clamped, others at their centre.
             let place = match SHARED {
@@ -205,7 +196,7 @@ impl<T: Number, const PAGES: usize, const SHARED: bool> Kernel<T>
             let w = lanes.load(&barycentrics.w, at);
             // z is only interpolated in orthographic projection.
             let sample = look.at(lanes, normal, place, w, || {
-                depth_between(picked::<M, PAGES>(lanes, &attributes.z, slots), weights)
+                depth_between(picked(lanes, &attributes.z, slots), weights)
             });
             batch.put(lanes, sample, at);
         }

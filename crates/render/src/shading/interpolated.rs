@@ -9,29 +9,31 @@ use fearless_simd::{
 use glam::DVec3;
 
 use super::barycentrics::{Barycentrics, Weigh};
+use super::context::Group;
 use super::fragments::Fragments;
-use super::full_blocks::{Linear as _, Wide};
+use super::full_blocks::Wide;
 use super::texels::{TexelScratch, Texels, TextureSamples, lane_steps};
 use super::triangle_attributes::{AttributeNumber, TriangleAttributes, picked};
 use crate::frame::FramePlan;
 use crate::frame::draw::Draw;
+use crate::frame::shading_mode::ShadingMode;
 use crate::frame::variants::Decoding;
-use crate::lights::{Light, Rows, set};
+use crate::lights::{Rows, set};
 use crate::screen::clipped_weights::ClippedWeights;
 use crate::screen::coverage::Triangle;
 use crate::screen::homogeneous::barycentric;
 use crate::screen::weights::cut_place;
-use crate::simd::gather::{SLOTS, paged, pick};
+use crate::simd::gather::{SLOTS, Slots, pick};
 use crate::simd::{Bits, Lanes as _, Sixteen, in_f64};
 use crate::texture::lanes::{Linear, Stored};
 use crate::texture::placement::{Placement, UvRows};
-use marraztu_core::accuracy::{Coverage, Interpolation, Settings};
+use marraztu_core::accuracy::Interpolation;
 use marraztu_core::scene::Texture;
 
 /// A number type in which fragments are shaded. The defaults are those of f64, which has no fast
 /// paths: they handle nothing.
 #[expect(unused_variables, reason = "the defaults read nothing")]
-pub(crate) trait ShadingNumber: Light + AttributeNumber {
+pub(crate) trait ShadingNumber: AttributeNumber {
     /// Computes all barycentric coordinates sixteen pixels at a time, if the triangles allow it.
     /// Returns whether they do.
     fn find(
@@ -81,13 +83,13 @@ impl<T: ShadingNumber> Barycentrics<T> {
         level: Level,
         fragments: &Fragments,
         attributes: &TriangleAttributes<T>,
-        (plan, draw): (&FramePlan, &Draw),
+        group: &Group<'_, T>,
     ) {
-        let Settings { coverage, interpolation, .. } = *plan.variants;
+        let &ShadingMode { interpolation, clamps, .. } = group.context.mode();
         // The quick path needs pixel centres inside of their triangles.
-        let outside = fragments.shared || coverage != Coverage::Exact;
+        let outside = fragments.shared || clamps;
         if outside || !T::find(interpolation, level, fragments, attributes, self) {
-            self.find_step_by_step(level, fragments, attributes, (plan, draw));
+            self.find_step_by_step(level, fragments, attributes, group);
         }
     }
 
@@ -97,22 +99,18 @@ impl<T: ShadingNumber> Barycentrics<T> {
         level: Level,
         fragments: &Fragments,
         attributes: &TriangleAttributes<T>,
-        (plan, draw): (&FramePlan, &Draw),
+        group: &Group<'_, T>,
     ) {
-        let interpolation = plan.variants.interpolation;
+        let &ShadingMode { interpolation, clamps, .. } = group.context.mode();
         // Linear coordinates first; then pixels outside are clamped; then perspective is applied.
         T::find_linear(level, fragments, attributes, self);
         self.find_wide(fragments, attributes);
         if fragments.shared {
             self.clamp_to_triangle(level, fragments, attributes);
         }
-        let clamps = plan.variants.coverage != Coverage::Exact;
-        paged!(attributes.count, PAGES => T::run(
-            level,
-            Weigh::<T, PAGES> { interpolation, clamps, fragments, attributes, to: self },
-        ));
+        T::run(level, Weigh { interpolation, clamps, fragments, attributes, to: self });
         if attributes.cut != 0 {
-            self.find_cut(fragments, attributes, plan, draw);
+            self.find_cut(fragments, attributes, group.context.plan, group.draw);
         }
     }
 
@@ -192,20 +190,14 @@ impl ShadingNumber for f32 {
         if attributes.cut != 0 {
             return false;
         }
-        paged!(attributes.count, PAGES => {
-            dispatch!(level, simd => {
-                find_narrow::<_, PAGES>(interpolation, simd, fragments, attributes, to);
-            });
-        });
+        dispatch!(level, simd => find_narrow(interpolation, simd, fragments, attributes, to));
         // Wide triangles among others are computed again in f64.
         for slot in Bits(attributes.wide) {
             let corners = attributes.corners(slot);
             let Some(triangle) = Triangle::on(attributes.grid, corners) else { continue };
-            paged!(attributes.count, PAGES => {
-                dispatch!(level, simd => {
-                    let of = (slot, &triangle);
-                    find_among::<_, PAGES>(interpolation, simd, fragments, of, attributes, to);
-                });
+            dispatch!(level, simd => {
+                let of = (slot, &triangle);
+                find_among(interpolation, simd, fragments, of, attributes, to);
             });
         }
         true
@@ -217,13 +209,9 @@ impl ShadingNumber for f32 {
         attributes: &TriangleAttributes<Self>,
         to: &mut Barycentrics<Self>,
     ) {
-        paged!(attributes.count, PAGES => {
-            // Only the linear coordinates are used: weights are computed again after clamping.
-            let perspective = Interpolation::Perspective;
-            dispatch!(level, simd => {
-                find_narrow::<_, PAGES>(perspective, simd, fragments, attributes, to);
-            });
-        });
+        // Only the linear coordinates are used: weights are computed again after clamping.
+        let perspective = Interpolation::Perspective;
+        dispatch!(level, simd => find_narrow(perspective, simd, fragments, attributes, to));
     }
 
     fn place_texture(
@@ -248,17 +236,11 @@ impl ShadingNumber for f32 {
         what: Texels,
         (scratch, to): (&mut TexelScratch, &mut Rows<Self>),
     ) -> u64 {
-        paged!(samples.points.attributes.count, PAGES => {
-            dispatch!(level, simd => match (what, samples.decoding) {
-                (Texels::Colors, Decoding::Stored) => {
-                    samples.multiply::<_, Stored, PAGES>(simd, scratch, to);
-                }
-                (Texels::Colors, Decoding::Linear) => {
-                    samples.multiply::<_, Linear, PAGES>(simd, scratch, to);
-                }
-                // Heights are numbers and are never decoded.
-                (Texels::Slopes, _) => samples.slopes::<_, PAGES>(simd, scratch, to),
-            });
+        dispatch!(level, simd => match (what, samples.decoding) {
+            (Texels::Colors, Decoding::Stored) => samples.multiply::<_, Stored>(simd, scratch, to),
+            (Texels::Colors, Decoding::Linear) => samples.multiply::<_, Linear>(simd, scratch, to),
+            // Heights are numbers and are never decoded.
+            (Texels::Slopes, _) => samples.slopes(simd, scratch, to),
         });
         samples.texture.placement.known
     }
@@ -266,7 +248,7 @@ impl ShadingNumber for f32 {
 
 /// Computes the coordinates in narrow triangles.
 #[inline(always)]
-fn find_narrow<S: Simd, const PAGES: usize>(
+fn find_narrow<S: Simd>(
     interpolation: Interpolation,
     simd: S,
     fragments: &Fragments,
@@ -275,15 +257,15 @@ fn find_narrow<S: Simd, const PAGES: usize>(
 ) {
     let lanes = Sixteen(simd);
     for at in (0..fragments.len).step_by(16) {
-        let slots = lanes.slots(&fragments.slots, at);
+        let slots = lanes.slots((&fragments.slots, attributes.count), at);
         let x = i32x16::from_slice(simd, &fragments.x[at..at + 16]);
         let y = i32x16::from_slice(simd, &fragments.y[at..at + 16]);
-        let per_area = lanes.pick::<PAGES>(&attributes.per_area, slots);
-        let second = edge::<S, PAGES>(simd, &attributes.edges[0], slots, [x, y]) * per_area;
-        let third = edge::<S, PAGES>(simd, &attributes.edges[1], slots, [x, y]) * per_area;
+        let per_area = lanes.pick(&attributes.per_area, slots);
+        let second = edge(simd, &attributes.edges[0], slots, [x, y]) * per_area;
+        let third = edge(simd, &attributes.edges[1], slots, [x, y]) * per_area;
         lanes.store(second, &mut to.linear[0], at);
         lanes.store(third, &mut to.linear[1], at);
-        let by_w = picked::<_, PAGES>(lanes, &attributes.by_w, slots);
+        let by_w = picked(lanes, &attributes.by_w, slots);
         to.put(interpolation, lanes, at, [second, third], by_w);
     }
 }
@@ -292,7 +274,7 @@ fn find_narrow<S: Simd, const PAGES: usize>(
 /// in the other triangles are already known.
 #[inline(always)]
 #[expect(clippy::cast_precision_loss, reason = "they have fewer than 53 bits")]
-fn find_among<S: Simd, const PAGES: usize>(
+fn find_among<S: Simd>(
     interpolation: Interpolation,
     simd: S,
     fragments: &Fragments,
@@ -310,8 +292,8 @@ fn find_among<S: Simd, const PAGES: usize>(
     let second = [er as f64, ed as f64, e as f64, per_area];
     let third = [fr as f64, fd as f64, f as f64, per_area];
     for at in (0..fragments.len).step_by(16) {
-        let slots = lanes.slots(&fragments.slots, at);
-        let own = slots.simd_eq(slot);
+        let slots = lanes.slots((&fragments.slots, attributes.count), at);
+        let own = slots.lanes.simd_eq(slot);
         if !own.any_true() {
             continue;
         }
@@ -322,7 +304,7 @@ fn find_among<S: Simd, const PAGES: usize>(
         let third = own.select(plane(third, x, y), lanes.load(&to.linear[1], at));
         lanes.store(second, &mut to.linear[0], at);
         lanes.store(third, &mut to.linear[1], at);
-        let by_w = picked::<_, PAGES>(lanes, &attributes.by_w, slots);
+        let by_w = picked(lanes, &attributes.by_w, slots);
         to.put(interpolation, lanes, at, [second, third], by_w);
     }
 }
@@ -337,15 +319,15 @@ fn plane<S: Simd>([a, b, c, d]: [f64; 4], x: [f64x8<S>; 2], y: [f64x8<S>; 2]) ->
 /// Computes an edge function of narrow triangles. It is exact in 32 bits: products may wrap, but
 /// the sum fits.
 #[inline(always)]
-fn edge<S: Simd, const PAGES: usize>(
+fn edge<S: Simd>(
     simd: S,
     [a, b, c]: &[[i32; SLOTS]; 3],
-    slots: i32x16<S>,
+    slots: Slots<S>,
     [x, y]: [i32x16<S>; 2],
 ) -> f32x16<S> {
-    let a = pick::<S, PAGES>(simd, a, slots);
-    let b = pick::<S, PAGES>(simd, b, slots);
-    let c = pick::<S, PAGES>(simd, c, slots);
+    let a = pick(simd, a, slots);
+    let b = pick(simd, b, slots);
+    let c = pick(simd, c, slots);
     (a * x + b * y + c).to_float()
 }
 
@@ -365,9 +347,7 @@ fn find_in_one<S: Simd>(
     let by_w = set(lanes, [w0[0], w1[0], w2[0]]);
     // A whole block needs no pixel positions.
     if fragments.is_whole() {
-        for (pair, linear) in
-            wide.block(simd, [fragments.x[0], fragments.y[0]]).into_iter().enumerate()
-        {
+        for (pair, linear) in wide.block([fragments.x[0], fragments.y[0]]).into_iter().enumerate() {
             to.put(interpolation, lanes, 16 * pair, linear, by_w);
         }
         return;

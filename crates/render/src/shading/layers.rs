@@ -54,7 +54,7 @@ impl Layered {
             // A sample with the same sequence as the one before has the same colours.
             if sequence.is_empty() || sequence != before {
                 // First the opaque surface, then the layers over it from far to near.
-                let mut behind = Sums::new(plan.variants.are_linear());
+                let mut behind = Sums::new(context.mode().is_linear());
                 shader.add_entries(context, &opaque, corner, &mut behind);
                 blend.begin(|place| behind.parts(place));
                 while more {

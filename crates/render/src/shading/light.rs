@@ -14,9 +14,10 @@ use glam::{DMat3, DVec3};
 use super::interpolated::ShadingNumber;
 use super::shadows::{BatchShadows, place_vertices};
 use super::triangle_attributes::TriangleAttributes;
-use crate::frame::draw::{Back, Draw, Pipeline, Shaded, Stage};
+use crate::frame::draw::{Back, Draw, Pipeline, Stage};
+use crate::frame::program::{LightOp, Programs};
 use crate::frame::{Eye, FramePlan};
-use crate::lights::{Batch, LightTerm, Together, columns, load, set, store, turned};
+use crate::lights::{Batch, LightTerm, columns, load, set, set_lights, store, turned};
 use crate::plan::tile::TileLight;
 use crate::shadow::rays::{Origins, RayScratch};
 use crate::shadow::tracer::Tracer;
@@ -59,7 +60,7 @@ pub(crate) struct Table<T> {
 
 impl<T: ShadingNumber> Lit<T> {
     /// Prepares tables for everything that the plan lights at vertices.
-    pub(crate) fn prepare(&mut self, plan: &FramePlan) {
+    pub(crate) fn prepare(&mut self, plan: &FramePlan, programs: &Programs) {
         self.to_view.clear();
         self.to_view.extend(plan.draws.iter().map(|draw| ToView::new(plan, draw)));
         self.used = 0;
@@ -72,9 +73,7 @@ impl<T: ShadingNumber> Lit<T> {
             let own: BTreeSet<u32> = draw.part_pipelines.iter().flatten().copied().collect();
             for pipeline in own {
                 let Pipeline::Shaded(shaded) = &plan.pipelines[pipeline as usize] else { continue };
-                if shaded.light.is_none() {
-                    continue;
-                }
+                let LightOp::Vertices(light) = programs.of(i, pipeline).light else { continue };
                 // A second table holds the light on the back, if backs are lit.
                 for back in [false, true] {
                     if back && draw.back != Back::Lit {
@@ -88,7 +87,7 @@ impl<T: ShadingNumber> Lit<T> {
                     (table.draw, table.pipeline) = (i, pipeline);
                     self.used += 1;
                     table.to_view = Some(self.to_view[i as usize].seen_from(back));
-                    table.clear(draw, shaded);
+                    table.clear(draw, light.is_colored().then_some(shaded.tint));
                 }
             }
         }
@@ -148,22 +147,14 @@ pub(crate) struct Lighting<'a, T> {
 }
 
 impl<T: ShadingNumber> Table<T> {
-    /// Returns whether the table holds final colours instead of light.
-    pub(crate) const fn is_colored(&self) -> bool {
-        self.tint.is_some()
-    }
-
-    /// Clears the table for a draw.
-    fn clear(&mut self, draw: &Draw, shaded: &Shaded) {
+    /// Clears the table for a draw, to hold light, or colours of a surface with this tint.
+    fn clear(&mut self, draw: &Draw, tint: Option<[f64; 3]>) {
         let count = place_count(draw).div_ceil(CHUNK);
-        // Unless texels or vertex colours multiply the light, vertices hold final colours.
-        let colored =
-            shaded.texture.is_none() && !shaded.vertex_colors && !shaded.extras.reads_texels();
-        self.tint = colored.then(|| shaded.tint.map(T::from_f64));
+        self.tint = tint.map(|tint| tint.map(T::from_f64));
         self.diffuse.clear();
         self.diffuse.resize_with(count, OnceLock::new);
         self.specular.clear();
-        self.specular.resize_with(if colored { 0 } else { count }, OnceLock::new);
+        self.specular.resize_with(if tint.is_some() { 0 } else { count }, OnceLock::new);
     }
 
     /// Returns the diffuse light or final colour of a vertex, and lights it in `batch` if
@@ -407,24 +398,8 @@ pub(crate) fn run<T: ShadingNumber>(
     batch: &mut Batch<T>,
     shadows: Option<BatchShadows<'_>>,
 ) {
-    run_some(stages.iter().zip(terms), level, batch, shadows);
-}
-
-/// Sets the light at every position of a batch to the sum of some lights visible from it.
-fn run_some<'a, T: ShadingNumber>(
-    lights: impl Iterator<Item = (&'a Stage, &'a LightTerm<T>)> + Clone,
-    level: Level,
-    batch: &mut Batch<T>,
-    shadows: Option<BatchShadows<'_>>,
-) {
-    match shadows {
-        None => set_lights(lights, level, batch),
-        // With shadows, lights are added one by one: each is blocked at other positions.
-        Some(mut shadows) => {
-            batch.darken();
-            lights.for_each(|(stage, term)| shadows.add_light(stage, term, level, batch));
-        }
-    }
+    TileLight { stages, kept: None, needs_positions: true }
+        .light_batch(terms, level, batch, shadows);
 }
 
 impl TileLight<'_> {
@@ -437,30 +412,18 @@ impl TileLight<'_> {
         batch: &mut Batch<T>,
         shadows: Option<BatchShadows<'_>>,
     ) {
-        let Some(kept) = self.kept else {
-            return run(self.stages, terms, level, batch, shadows);
+        let Some(mut shadows) = shadows else {
+            return set_lights(level, batch, terms, self.kept);
         };
-        // Some lights do not reach this tile.
-        let of = |place: &u32| (&self.stages[*place as usize], &terms[*place as usize]);
-        run_some(kept.iter().map(of), level, batch, shadows);
-    }
-}
-
-/// Sets the light at every position of a batch to the sum of some stages.
-fn set_lights<'a, T: ShadingNumber>(
-    lights: impl Iterator<Item = (&'a Stage, &'a LightTerm<T>)> + Clone,
-    level: Level,
-    batch: &mut Batch<T>,
-) {
-    // One pass over the batch adds all lights, unless a map changes their exponents.
-    if lights.clone().all(|(stage, _)| !stage.is_mapped) {
-        let lights = lights.map(
-            #[inline(always)]
-            |(stage, term)| (stage.effect.which, stage.highlight, term),
-        );
-        T::run(level, Together { batch, lights });
-    } else {
+        // With shadows, lights are added one by one: each is blocked at other positions.
         batch.darken();
-        lights.for_each(|(stage, term)| T::add_light(stage.variant(), level, batch, term));
+        let mut add = |at: usize| {
+            shadows.add_light(&self.stages[at], &terms[at], level, batch);
+        };
+        match self.kept {
+            None => (0..terms.len()).for_each(add),
+            // Some lights do not reach this tile.
+            Some(kept) => kept.iter().for_each(|at| add(*at as usize)),
+        }
     }
 }

@@ -4,7 +4,8 @@
 use super::colors::prepare_linear;
 use super::quantize::block_thresholds;
 use crate::frame::FramePlan;
-use crate::frame::draw::{Pipeline, Shaded};
+use crate::frame::draw::{Pipeline, Shaded, Stage};
+use crate::frame::shading_mode::ShadingMode;
 use crate::frame::variants::Decoding;
 use crate::lights::{LightTerm, PhongMaterial};
 use crate::screen::tiles::BLOCK_PIXELS;
@@ -37,15 +38,15 @@ impl<T> LightTerms<T> {
 
 impl<T: Number> LightTerms<T> {
     /// Prepares the light terms and mipmaps of a plan.
-    pub(crate) fn prepare(&mut self, plan: &FramePlan) {
-        self.encoding = plan.variants.are_linear().then(Encoding::new);
+    pub(crate) fn prepare(&mut self, plan: &FramePlan, mode: &ShadingMode) {
+        self.encoding = mode.is_linear().then(Encoding::new);
         // Tables are computed before drawing, so no thread waits for them.
         if self.encoding.is_some() {
             prepare_decoding();
             prepare_linear();
         }
-        self.prepare_mips(plan);
-        let rounding = plan.variants.rounding;
+        self.prepare_mips(plan, mode);
+        let rounding = mode.rounding;
         if self.thresholds.is_none_or(|(known, _)| known != rounding) {
             self.thresholds = Some((rounding, block_thresholds(rounding)));
         }
@@ -56,19 +57,22 @@ impl<T: Number> LightTerms<T> {
                 let PhongMaterial { exponent, floor, .. } = *material;
                 // The exponent depends on the material only, so its lights share the power.
                 let highlight = Power::new(exponent, floor);
-                let lights = stages.iter().map(|stage| &plan.lights[stage.light as usize]);
-                let term = |light| LightTerm::new(light, material, highlight);
-                terms.extend(lights.map(term));
+                let term = |stage: &Stage| {
+                    let light = &plan.lights[stage.light as usize];
+                    let shader = (stage.effect.which, stage.highlight, stage.is_mapped);
+                    LightTerm::new(light, material, highlight, shader)
+                };
+                terms.extend(stages.iter().map(term));
             }
         }
     }
 
     /// Prepares mipmaps, and reuses the mipmaps of the last picture.
-    fn prepare_mips(&mut self, plan: &FramePlan) {
+    fn prepare_mips(&mut self, plan: &FramePlan, mode: &ShadingMode) {
         let mut before = std::mem::take(&mut self.mips);
         for pipeline in &plan.pipelines {
             let Pipeline::Shaded(shaded) = pipeline else { continue };
-            for (texture, decoding) in mipped(plan, shaded) {
+            for (texture, decoding) in mipped(plan, mode, shaded) {
                 if self.mips_of(texture, decoding).is_none() {
                     // Mipmaps of the last picture are moved over; unused ones are dropped.
                     let known = before.iter().position(|mips| mips.are_of(texture, decoding));
@@ -100,16 +104,17 @@ impl<T: Number> LightTerms<T> {
 /// Iterates over the textures of a surface that need mipmaps, with the decoding for averaging.
 fn mipped<'a>(
     plan: &FramePlan,
+    mode: &ShadingMode,
     shaded: &'a Shaded,
 ) -> impl Iterator<Item = (&'a Shared<Texture>, Decoding)> {
     let extras = &shaded.extras;
-    let decoding = plan.variants.decoding();
+    let decoding = mode.decoding;
     let colors = shaded.texture.iter().chain(extras.colors()).map(move |it| (it, decoding));
     // Maps of numbers are averaged as stored, even if colours are linear.
     let numbers = extras.exponent.iter().map(|it| (it, Decoding::Stored));
     let bumps = extras.bump.iter().map(|bump| (&bump.map, Decoding::Stored));
     let filtered = plan.filter.reads_mips();
-    let bumps_filtered = plan.variants.bump_filter().reads_mips();
+    let bumps_filtered = mode.bump_filter.reads_mips();
     let of_frame = colors.chain(numbers).filter(move |_| filtered);
     of_frame.chain(bumps.filter(move |_| bumps_filtered))
 }

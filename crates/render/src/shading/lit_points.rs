@@ -30,7 +30,7 @@ pub(crate) fn place_fragments<T: ShadingNumber>(
     origins.begin(Some(caster), true);
     let vertices = frame.corners_of(group.draw_index);
     // Only weights with perspective are weights of positions.
-    let has_perspective = plan.variants.interpolation == Interpolation::Perspective;
+    let has_perspective = group.context.mode().interpolation == Interpolation::Perspective;
     let (mut last, mut known) = (usize::MAX, None);
     for i in 0..fragments.len {
         let slot = fragments.slots[i].cast_unsigned() as usize;
@@ -87,7 +87,7 @@ impl LitTriangle {
         // Points may be rounded off their planes by a multiple of the largest coordinate.
         let reach = corners.iter().fold(0.0, |most: f64, c| most.max(c.abs().max_element()));
         origins.reach = origins.reach.max(reach);
-        let is_smooth = group.context.plan.variants.terminator == Terminator::Smooth;
+        let is_smooth = group.context.mode().terminator == Terminator::Smooth;
         let normals = (is_smooth && group.draw.normals == Normals::Vertex).then(|| {
             let turn = if is_back { -1.0 } else { 1.0 };
             each(normals_of(group.draw, tracer, caster, number), |normal| normal * turn)

@@ -49,7 +49,7 @@ impl<'a> TexelSource<'a> {
         context: &ShadingContext<'a, T>,
         texture: &'a Shared<Texture>,
     ) -> Self {
-        Self::new(context, texture, context.plan.variants.decoding())
+        Self::new(context, texture, context.mode().decoding)
     }
 
     /// Returns a sampler for lanes. `None` if the texture has no texels.

@@ -9,7 +9,7 @@ use super::face_colors::FaceColors;
 use super::interpolated::ShadingNumber;
 use super::runs::Runs;
 use super::shader::Shader;
-use crate::frame::color_path::FullPath;
+use crate::frame::program::WholePath;
 use crate::raster::tile::Visibility;
 use crate::screen::tiles::{BLOCK_PIXELS, PIXELS};
 use crate::simd::dispatch;
@@ -35,7 +35,7 @@ impl<T: ShadingNumber> Shader<T> {
             let (own, others) = left.split_at(count);
             left = others;
             // Faces with more than one colour are shaded pixel by pixel later.
-            if group.path.full != FullPath::Fill {
+            if group.program.whole != WholePath::Fill {
                 continue;
             }
             // The next group is prefetched while this one is lit.

@@ -12,8 +12,7 @@ use glam::DVec3;
 
 use super::interpolated::ShadingNumber;
 use super::shadows::{first, lit};
-use crate::frame::draw::Stage;
-use crate::lights::{Batch, LightTerm};
+use crate::lights::{Batch, LightTerm, add_light};
 use crate::shadow::ball_light::LightSample;
 use crate::shadow::extents::{Sky, SkyAbove};
 use crate::shadow::rays::RayScratch;
@@ -25,13 +24,13 @@ use crate::simd::Bits;
 pub(super) fn add_sky<T: ShadingNumber>(
     (tracer, sky): (&Tracer<'_>, Sky),
     scratch: &mut RayScratch,
-    (stage, term): (&Stage, &LightTerm<T>),
+    term: &LightTerm<T>,
     level: Level,
     batch: &mut Batch<T>,
 ) {
     let before = first(&batch.diffuse);
     let specular = first(&batch.specular);
-    T::add_light(stage.variant(), level, batch, term);
+    add_light(level, batch, term);
     let reached = lit(level, batch, &(before, specular));
     let mut skies: [Option<SkyAbove>; POINTS] = [None; POINTS];
     for i in Bits(reached) {

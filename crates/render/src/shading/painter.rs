@@ -100,8 +100,8 @@ impl TileSums {
 
 impl TilePasses {
     /// Returns the blocks, and creates them if necessary.
-    fn blocks(&mut self, plan: &FramePlan) -> &mut [BlockPasses] {
-        let sums = Sums::new(plan.variants.are_linear());
+    fn blocks(&mut self, is_linear: bool) -> &mut [BlockPasses] {
+        let sums = Sums::new(is_linear);
         let nothing = BlockPasses { sums, kept: Kept::default(), background: 0 };
         self.blocks.resize(BLOCK_PIXELS, nothing);
         &mut self.blocks
@@ -158,7 +158,7 @@ impl<T: PathNumber> Painter<T> {
         let full = self.visibility.full_blocks().count_ones() as usize;
         let is_done = full >= BLOCK_PIXELS / 4;
         if whole
-            && context.paths.quick
+            && context.programs.are_quick
             && is_done
             && let Ok(mut band) = band.try_lock()
         {
@@ -235,7 +235,7 @@ impl<T: PathNumber> Painter<T> {
             if layered >> block & 1 != 0 {
                 // Layers reuse the fragment list, so waiting blocks are coloured before.
                 self.shader.finish_waiting(context, canvas);
-                let mut sums = Sums::new(context.plan.variants.are_linear());
+                let mut sums = Sums::new(context.mode().is_linear());
                 let corner = self.visibility.corner(block);
                 let Self { shader, visibility, layered, .. } = self;
                 layered.add(context, (shader, visibility), (block, corner), &mut sums);
@@ -312,7 +312,7 @@ impl<T: PathNumber> Painter<T> {
         }
         // Separate samples need the fragment list, so waiting blocks are coloured before.
         shader.finish_waiting(context, canvas);
-        let mut sums = Sums::new(context.plan.variants.are_linear());
+        let mut sums = Sums::new(context.mode().is_linear());
         let shows = shader.add_samples(context, samples, corner, (&mut sums, None));
         canvas.put(at, &sums.means(count.ilog2()));
         shows
@@ -328,7 +328,7 @@ impl<T: PathNumber> Painter<T> {
             // A pass without primitives adds background to every pixel, and needs no sums.
             to.background += frame.sample_positions().shares();
         } else {
-            for (block, to) in to.blocks(plan).iter_mut().enumerate() {
+            for (block, to) in to.blocks(context.mode().is_linear()).iter_mut().enumerate() {
                 match many {
                     true => self.add_block(context, block, to),
                     false => self.add_block_of_one(context, block, to),

@@ -14,7 +14,7 @@ use super::quantize::Thresholds;
 use super::samples::Kept;
 use super::tiny_triangles::{CornerRows, TinyTriangles};
 use super::triangle_attributes::TriangleAttributes;
-use crate::frame::color_path::PathPixels;
+use crate::frame::program::PathPixels;
 use crate::lights::{Batch, Rows};
 use crate::plan::tile::TilePlan;
 use crate::screen::tiles::BLOCK_PIXELS;

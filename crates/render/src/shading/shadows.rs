@@ -19,7 +19,7 @@ use super::occlusion::add_sky;
 use super::soft_shadows::add_soft_light;
 use super::triangle_attributes::TriangleAttributes;
 use crate::frame::draw::{Draw, Stage};
-use crate::lights::{Batch, LightTerm, Rows};
+use crate::lights::{Batch, LightTerm, Rows, add_light};
 use crate::shadow::known::{BatchPixels, KnownPixels};
 use crate::shadow::map_face::{Reading, TAPS};
 use crate::shadow::rays::{Origins, RayScratch};
@@ -99,19 +99,19 @@ impl<'a> BatchShadows<'a> {
         if let Some(sky) = self.tracer.sky(stage.light) {
             self.place();
             let Self { tracer, scratch, .. } = self;
-            return add_sky((tracer, sky), scratch, (stage, term), level, batch);
+            return add_sky((tracer, sky), scratch, term, level, batch);
         }
         // Lights without shadows are only added.
         let Some(light) = self.tracer.light(stage.light) else {
-            return T::add_light(stage.variant(), level, batch, term);
+            return add_light(level, batch, term);
         };
         if let Some(soft) = self.tracer.soft(stage.light) {
             self.place();
             let Self { tracer, scratch, .. } = self;
-            return add_soft_light((tracer, soft), scratch, (stage, term), level, batch);
+            return add_soft_light((tracer, soft), scratch, term, level, batch);
         }
         let before = (first(&batch.diffuse), first(&batch.specular));
-        T::add_light(stage.variant(), level, batch, term);
+        add_light(level, batch, term);
         // Positions that the light did not change need no ray.
         let lit = lit(level, batch, &before);
         if lit == 0 {

@@ -9,8 +9,7 @@ use fearless_simd::Level;
 
 use super::interpolated::ShadingNumber;
 use super::shadows::{Firsts, first, lit};
-use crate::frame::draw::Stage;
-use crate::lights::{Batch, LightTerm};
+use crate::lights::{Batch, LightTerm, add_light};
 use crate::shadow::ball_light::{LightSample, SeenBall};
 use crate::shadow::extents::SoftLight;
 use crate::shadow::rays::RayScratch;
@@ -22,7 +21,7 @@ use crate::simd::Bits;
 pub(super) fn add_soft_light<T: ShadingNumber>(
     (tracer, light): (&Tracer<'_>, SoftLight),
     scratch: &mut RayScratch,
-    (stage, term): (&Stage, &LightTerm<T>),
+    term: &LightTerm<T>,
     level: Level,
     batch: &mut Batch<T>,
 ) {
@@ -49,7 +48,7 @@ pub(super) fn add_soft_light<T: ShadingNumber>(
         for row in batch.diffuse.iter_mut().chain(&mut batch.specular) {
             row[..POINTS].fill(T::default());
         }
-        T::add_light(stage.variant(), level, batch, term);
+        add_light(level, batch, term);
         let reached = lit(level, batch, &(dark, dark));
         let blocked = match is_hidden {
             true => tracer.blocked(level, scratch, (&samples, true), reached),

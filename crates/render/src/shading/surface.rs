@@ -9,22 +9,32 @@ use super::bumps::bend;
 use super::colors::Form;
 use super::context::{Group, ShadingContext, group_of, one_group};
 use super::fragments::Fragments;
-use super::hits::no_light;
+use super::hits::{Point, no_light, place_normals};
 use super::interpolate::{Look, Mixed, Points, mix, surface_samples};
 use super::interpolated::ShadingNumber;
 use super::light::{Lighting, Table, run};
-use super::lit_points::place_fragments;
+use super::lit_points::{place_fragments, place_points};
 use super::quantize::{Quantize, SurfaceColor};
 use super::shader::{Out, Shader};
 use super::shadows::{BatchShadows, place_faces};
 use super::triangle_attributes::{TriangleAttributes, asks_ahead};
 use crate::accel::Accelerated as _;
-use crate::frame::draw::{Back, Pipeline, Shaded, Stage};
+use crate::frame::draw::{Back, Pipeline, Shaded};
+use crate::frame::program::{LightOp, Program, VertexLight};
+use crate::plan::tile::TileLight;
 use crate::shadow::rays::Origins;
-use crate::simd::BATCH;
 use crate::simd::gather::{SLOTS, most_gathered};
 use marraztu_core::accuracy::{LightAt, Rounding};
 use marraztu_core::base::color::Color;
+
+/// The points of a list: everything after them is the same.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Origin<'a> {
+    /// Pixels of the picture.
+    Pixels,
+    /// Points that rays meet.
+    Hits(&'a [Point]),
+}
 
 impl<T: ShadingNumber> Shader<T> {
     /// Returns the number of slots up to which triangles keep their slots for the next list:
@@ -55,13 +65,9 @@ impl<T: ShadingNumber> Shader<T> {
             Out::Tile(..) | Out::Waiting(_) => Form::Pixels,
             Out::Sums(_) | Out::Kept(..) | Out::Layer(_) => Form::Parts,
         };
-        self.colors.linear = group.context.plan.variants.are_linear();
+        self.colors.linear = group.context.mode().is_linear();
         self.group(group);
-        let pixels = self.fragments.len as u64;
-        match out {
-            Out::Waiting(_) => self.path_pixels.joined += pixels,
-            _ => self.path_pixels.alone += pixels,
-        }
+        self.path_pixels.slots += self.fragments.len as u64;
         match out {
             Out::Tile(canvas, at) => self.copy(canvas, 0..self.fragments.len, *at),
             Out::Waiting(canvas) => self.copy_waiting(canvas),
@@ -139,39 +145,37 @@ impl<T: ShadingNumber> Shader<T> {
     }
 
     fn shaded(&mut self, group: &Group<'_, T>, shaded: &Shaded) {
-        let Group { context, draw, .. } = *group;
-        let ShadingContext { level, plan, .. } = *context;
+        let Group { context, draw, program, .. } = *group;
+        let Program { is_located, is_by_triangle, light, .. } = *program;
         let extras = &shaded.extras;
-        let textured = shaded.varies();
-        // Whether every pixel has a separate colour.
-        let each = textured || plan.variants.rounding == Rounding::Dithered;
-        let light = shaded.light.as_deref().map(|stages| (plan.light_at, stages));
-        let located = textured || matches!(light, Some((LightAt::Pixel | LightAt::Vertex, _)));
         // Indices of texture coordinates are prefetched while corners are prepared.
         if shaded.texture.is_some() && asks_ahead(self.fragments.count) {
             let mesh = &draw.model.mesh;
             let numbers = &self.fragments.numbers[..self.fragments.count];
             numbers.iter().for_each(|number| mesh.prefetch_uv_places(number - group.base));
         }
-        self.take(group, located);
+        self.take(group, is_located);
         // Textures are placed for all slots of a list, so keeping slots would save little.
-        self.prepares_little = !textured && extras.is_empty();
-        if located {
-            self.barycentrics.find(level, &self.fragments, &self.attributes, (plan, draw));
+        self.prepares_little = !shaded.varies() && extras.is_empty();
+        if is_located {
+            self.barycentrics.find(context.level, &self.fragments, &self.attributes, group);
         }
-        // If each triangle has one colour, colours are computed per slot and handed out at the end.
-        let is_by_slot = !(located || each);
-        self.batch.len = if is_by_slot { self.fragments.count } else { self.fragments.len };
+        let Fragments { count, len, .. } = self.fragments;
+        self.batch.len = if is_by_triangle { count } else { len };
         // Light comes first. With light at vertices it may contain the tint already.
         let mut tint = shaded.tint;
         match light {
-            None => {}
-            Some((LightAt::Pixel | LightAt::Sample, _)) => self.light_pixels(group, shaded),
-            Some((LightAt::Vertex, stages)) => match self.mix_light(group, shaded, stages) {
-                Some(factor) => tint = factor,
-                None => return,
-            },
-            Some((LightAt::Face, stages)) => self.light_faces(group, stages, each),
+            LightOp::None => {}
+            LightOp::Points => self.light_points(group, shaded, Origin::Pixels),
+            LightOp::Faces => self.light_faces(group, shaded),
+            LightOp::Vertices(light) => {
+                self.mix_light(group, shaded, light);
+                match light {
+                    VertexLight::Bytes => return,
+                    VertexLight::Colors => tint = [1.0; 3],
+                    VertexLight::Light => {}
+                }
+            }
         }
         let mut glows = self.surface_light(group, shaded);
         if let Some(rays) = &extras.rays {
@@ -181,9 +185,10 @@ impl<T: ShadingNumber> Shader<T> {
             self.see_surroundings(group, rays);
             glows = true;
         }
-        let lit = light.is_some();
-        self.quantize(context, (!textured).then_some(tint), (lit, glows));
-        if is_by_slot {
+        let tint = (!shaded.varies()).then_some(tint);
+        self.quantize(context, tint, (light != LightOp::None, glows));
+        // If each triangle has one colour, the colours of slots are handed out to their pixels.
+        if is_by_triangle {
             self.colors.hand_out(&self.fragments.slots[..self.fragments.len]);
         }
     }
@@ -195,8 +200,8 @@ impl<T: ShadingNumber> Shader<T> {
         tint: Option<[f64; 3]>,
         (lit, glows): (bool, bool),
     ) {
-        let ShadingContext { level, plan, terms, .. } = *context;
-        let (rounding, encoding) = (plan.variants.rounding, terms.encoding());
+        let ShadingContext { level, terms, .. } = *context;
+        let (rounding, encoding) = (context.mode().rounding, terms.encoding());
         let Self { batch, texels, colors, maps, thresholds, fragments, .. } = self;
         let own = match tint {
             None => SurfaceColor::Texels(texels),
@@ -230,7 +235,8 @@ impl<T: ShadingNumber> Shader<T> {
         if new {
             let vertices = frame.corners_of(draw_index);
             // Normals are requested now and read after the corners.
-            if located && plan.light_at == LightAt::Pixel && asks_ahead(self.fragments.count) {
+            if located && group.program.light == LightOp::Points && asks_ahead(self.fragments.count)
+            {
                 self.attributes.prefetch_normals(draw);
             }
             self.attributes.find_sides(level, draw, plan, vertices);
@@ -253,8 +259,13 @@ impl<T: ShadingNumber> Shader<T> {
         }
     }
 
-    /// Phong shading: lights every pixel.
-    fn light_pixels(&mut self, group: &Group<'_, T>, shaded: &Shaded) {
+    /// Phong shading: lights every point.
+    pub(super) fn light_points(
+        &mut self,
+        group: &Group<'_, T>,
+        shaded: &Shaded,
+        origin: Origin<'_>,
+    ) {
         let context = group.context;
         let ShadingContext { level, plan, terms, .. } = *context;
         if let Some(map) = &shaded.extras.exponent {
@@ -262,14 +273,22 @@ impl<T: ShadingNumber> Shader<T> {
         }
         let look = self.look_of(group);
         let Self { tile, fragments, attributes, barycentrics, batch, maps, rays, .. } = self;
-        let light = tile.light(plan, group.pipeline, shaded);
+        // Lights are left out tile by tile; rays have no tile.
+        let light = match origin {
+            Origin::Pixels => tile.light(plan, group.pipeline, shaded),
+            Origin::Hits(_) => TileLight::of(shaded),
+        };
         if light.needs_positions {
             if attributes.are_new {
                 attributes.carry_normals(group.draw);
                 attributes.spread(level);
             }
             let points = Points { fragments, attributes, barycentrics };
-            surface_samples(level, look, points, batch);
+            match origin {
+                Origin::Pixels => surface_samples(level, look, points, batch),
+                // Positions and directions are those of the rays.
+                Origin::Hits(_) => place_normals(level, group.draw, points, batch),
+            }
             // Bump maps tilt the interpolated normals before any light reads them.
             if let Some(bump) = &shaded.extras.bump {
                 if shaded.extras.rays.is_some() {
@@ -281,56 +300,59 @@ impl<T: ShadingNumber> Shader<T> {
             // The attributes were not fetched, so the next block must not reuse them.
             attributes.forget();
         }
-        // Shadow rays start at the exact points that the fragments show.
+        // Shadow rays start at the exact points.
         let tracer = context.tracer_of(group.draw_index).filter(|_| light.needs_positions);
         let points = Points { fragments, attributes, barycentrics };
-        let mut place = |origins: &mut Origins| {
-            if let Some(tracer) = tracer {
-                place_fragments(group, tracer, points, origins);
+        let mut place = |origins: &mut Origins| match (tracer, origin) {
+            (None, _) => {}
+            (Some(tracer), Origin::Pixels) => place_fragments(group, tracer, points, origins),
+            (Some(tracer), Origin::Hits(hits)) => {
+                let hits = hits.iter().map(|point| (point.hit.triangle, point.hit.weights));
+                place_points(group, tracer, (hits, attributes.back), origins);
             }
         };
-        let shadows = tracer
-            .map(|(tracer, _)| BatchShadows::new(tracer, rays, &mut place).of_pixels(fragments));
+        let shadows = tracer.map(|(tracer, _)| {
+            let shadows = BatchShadows::new(tracer, rays, &mut place);
+            match origin {
+                Origin::Pixels => shadows.of_pixels(fragments),
+                Origin::Hits(_) => shadows,
+            }
+        });
         light.light_batch(terms.of(group.pipeline), level, batch, shadows);
     }
 
-    /// Gouraud shading: interpolates the light or the final colours of vertices at every pixel.
-    /// Returns the factor of diffuse light, or `None` if pixels have got their bytes already.
-    fn mix_light(
-        &mut self,
-        group: &Group<'_, T>,
-        shaded: &Shaded,
-        stages: &[Stage],
-    ) -> Option<[f64; 3]> {
-        let ShadingContext { level, plan, lit, .. } = *group.context;
+    /// Gouraud shading: interpolates the light or the colours of vertices at every pixel.
+    fn mix_light(&mut self, group: &Group<'_, T>, shaded: &Shaded, light: VertexLight) {
+        let ShadingContext { level, lit, .. } = *group.context;
         let tables = lit.tables(group.draw_index, group.pipeline);
-        // Tables of final colours need one interpolation, tables of light need two.
-        let colored = tables[0].is_colored();
-        if !colored {
+        // Tables of colours need one interpolation, tables of light need two.
+        if !light.is_colored() {
             // The attributes of the last block hold specular light.
             self.attributes.keep_none();
         }
-        if self.attributes.are_new || !colored {
-            self.carry_diffuse(group, stages, tables);
+        if self.attributes.are_new || !light.is_colored() {
+            self.carry_diffuse(group, shaded, tables);
         }
         let Self { fragments, attributes, barycentrics, batch, colors, thresholds, .. } = self;
         let interpolate = |attributes: &TriangleAttributes<T>, to| {
             let points = Points { fragments, attributes, barycentrics };
             mix(level, points, &attributes.values, to);
         };
-        // Final colours are interpolated and converted in one pass, unless something is added
-        // later.
-        if colored && !plan.variants.are_linear() && shaded.extras.is_empty() {
-            let thresholds = thresholds.of(plan.variants.rounding, fragments);
-            interpolate(attributes, Mixed::Colors(colors, thresholds));
-            return None;
+        match light {
+            // Interpolated and rounded in one pass.
+            VertexLight::Bytes => {
+                let thresholds = thresholds.of(group.context.mode().rounding, fragments);
+                return interpolate(attributes, Mixed::Colors(colors, thresholds));
+            }
+            VertexLight::Colors | VertexLight::Light => {
+                interpolate(attributes, Mixed::Rows(&mut batch.diffuse));
+                batch.len = fragments.len;
+            }
         }
-        interpolate(attributes, Mixed::Rows(&mut batch.diffuse));
-        batch.len = fragments.len;
-        if colored {
-            // Final colours include the highlights.
-            batch.specular = [[T::default(); BATCH]; 3];
-            return Some([1.0; 3]);
+        if light.is_colored() {
+            // Colours include the highlights.
+            batch.specular = no_light();
+            return;
         }
         // Diffuse light is done; now the same attributes carry specular light.
         attributes.carry_light(
@@ -340,7 +362,6 @@ impl<T: ShadingNumber> Shader<T> {
         );
         attributes.spread(level);
         interpolate(attributes, Mixed::Rows(&mut batch.specular));
-        Some(shaded.tint)
     }
 
     /// Sets the attributes of corners to their diffuse light, or to their final colours, and
@@ -348,10 +369,11 @@ impl<T: ShadingNumber> Shader<T> {
     pub(crate) fn carry_diffuse(
         &mut self,
         group: &Group<'_, T>,
-        stages: &[Stage],
+        shaded: &Shaded,
         tables: [&Table<T>; 2],
     ) {
         let context = group.context;
+        let stages = shaded.stages();
         let Self { attributes, batch, rays, .. } = self;
         let terms = context.terms.of(group.pipeline);
         let tracer =
@@ -365,8 +387,8 @@ impl<T: ShadingNumber> Shader<T> {
         attributes.spread(context.level);
     }
 
-    /// Flat shading: lights each face, and copies the light to its pixels if they are `located`.
-    fn light_faces(&mut self, group: &Group<'_, T>, stages: &[Stage], located: bool) {
+    /// Flat shading: lights each face, and copies the light to its pixels if they differ.
+    fn light_faces(&mut self, group: &Group<'_, T>, shaded: &Shaded) {
         let context = group.context;
         let ShadingContext { level, lit, terms, .. } = *context;
         let Self { fragments, attributes, batch, rays, .. } = self;
@@ -380,9 +402,9 @@ impl<T: ShadingNumber> Shader<T> {
             }
         };
         let shadows = tracer.map(|(tracer, _)| BatchShadows::new(tracer, rays, &mut place));
-        run(stages, terms.of(group.pipeline), level, batch, shadows);
+        run(shaded.stages(), terms.of(group.pipeline), level, batch, shadows);
         // Pixels that need separate colours get a copy of their face's light.
-        if located {
+        if !group.program.is_by_triangle {
             for row in batch.diffuse.iter_mut().chain(&mut batch.specular) {
                 let of_faces = *row;
                 for (own, slot) in row.iter_mut().zip(&fragments.slots[..fragments.len]) {

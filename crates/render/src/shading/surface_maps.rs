@@ -47,7 +47,7 @@ impl<T: ShadingNumber> Shader<T> {
         let Self { attributes, vertex_colors, .. } = self;
         let mesh = &group.draw.model.mesh;
         // Vertex colours are decoded before they are interpolated, like texels.
-        let decoded = |c: f32| match group.context.plan.variants.decoding() {
+        let decoded = |c: f32| match group.context.mode().decoding {
             Decoding::Linear => linear(f64::from(c)),
             Decoding::Stored => f64::from(c),
         };

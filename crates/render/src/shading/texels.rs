@@ -16,7 +16,7 @@ use crate::lights::{Rows, load, store};
 use crate::screen::clipped_weights::ClippedWeights;
 use crate::screen::coverage::doubled_area;
 use crate::screen::homogeneous::HomogeneousWeights;
-use crate::simd::gather::SLOTS;
+use crate::simd::gather::{SLOTS, Slots};
 use crate::simd::{BATCH, Lanes as _, Real, Sixteen, in_f64};
 use crate::texture::exact_placement::ExactPlacement;
 use crate::texture::lanes::{Decode, Sampler, Stored, TexelPlaces};
@@ -110,7 +110,7 @@ impl TextureSamples<'_, f32> {
     /// Multiplies colours by the texels of all fragments. Triangles without a known placement get
     /// arbitrary factors.
     #[inline(always)]
-    pub(crate) fn multiply<S: Simd, D: Decode, const PAGES: usize>(
+    pub(crate) fn multiply<S: Simd, D: Decode>(
         &self,
         simd: S,
         TexelScratch { places, texels, .. }: &mut TexelScratch,
@@ -118,7 +118,7 @@ impl TextureSamples<'_, f32> {
     ) {
         let Self { points: Points { fragments, .. }, texture, .. } = *self;
         let lanes = Sixteen(simd);
-        self.place::<S, PAGES>(simd, places);
+        self.place(simd, places);
         texture.sampler.sample::<S, D>(simd, places, fragments.len, texels);
         for at in (0..fragments.len).step_by(16) {
             let texel = load(lanes, texels, at);
@@ -128,11 +128,11 @@ impl TextureSamples<'_, f32> {
 
     /// Computes the places of all fragments.
     #[inline(always)]
-    fn place<S: Simd, const PAGES: usize>(&self, simd: S, to: &mut TexelPlaces) {
-        let Self { points: Points { fragments, barycentrics, .. }, texture, .. } = *self;
+    fn place<S: Simd>(&self, simd: S, to: &mut TexelPlaces) {
+        let Self { points: Points { fragments, attributes, barycentrics }, texture, .. } = *self;
         let lanes = Sixteen(simd);
         for at in (0..fragments.len).step_by(16) {
-            let slots = OfSlots::<S, PAGES>(lanes.slots(&fragments.slots, at));
+            let slots = OfSlots(lanes.slots((&fragments.slots, attributes.count), at));
             let w = lanes.load(&barycentrics.w, at);
             let way = texture.way(simd, &slots, barycentrics.weights_at(lanes, at));
             let mut position = texture.position(simd, &slots, way);
@@ -147,7 +147,7 @@ impl TextureSamples<'_, f32> {
     /// Computes the slopes of heights at all fragments, per texel along u and v, into the first two
     /// rows.
     #[inline(always)]
-    pub(crate) fn slopes<S: Simd, const PAGES: usize>(
+    pub(crate) fn slopes<S: Simd>(
         &self,
         simd: S,
         TexelScratch { places, texels, .. }: &mut TexelScratch,
@@ -155,7 +155,7 @@ impl TextureSamples<'_, f32> {
     ) {
         let Self { points: Points { fragments, .. }, texture, .. } = *self;
         let lanes = Sixteen(simd);
-        self.place::<S, PAGES>(simd, places);
+        self.place(simd, places);
         // A copy, because the places are moved for each of the four heights.
         let own = places.position;
         let mut heights = [[0.0; BATCH]; 4];
@@ -212,13 +212,13 @@ pub(crate) trait Triangles<S: Simd> {
     fn pick(&self, simd: S, row: &[f32; SLOTS]) -> f32x16<S>;
 }
 
-/// The triangles in some slots, all below `PAGES` times sixteen.
-struct OfSlots<S: Simd, const PAGES: usize>(i32x16<S>);
+/// The triangles in some slots.
+struct OfSlots<S: Simd>(Slots<S>);
 
-impl<S: Simd, const PAGES: usize> Triangles<S> for OfSlots<S, PAGES> {
+impl<S: Simd> Triangles<S> for OfSlots<S> {
     #[inline(always)]
     fn pick(&self, simd: S, row: &[f32; SLOTS]) -> f32x16<S> {
-        Sixteen(simd).pick::<PAGES>(row, self.0)
+        Sixteen(simd).pick(row, self.0)
     }
 }
 

@@ -21,12 +21,11 @@ use super::light::Lighting;
 use super::runs::Runs;
 use super::shader::{Out, Shader, Waiting};
 use super::tiny_triangles::{mix, sample, weigh};
-use crate::frame::color_path::ListPath;
 use crate::frame::draw::{Back, Shaded, Stage};
+use crate::frame::program::{LightOp, OtherPath};
 use crate::raster::entries::word;
 use crate::screen::tiles::BLOCK_PIXELS;
 use crate::simd::dispatch;
-use marraztu_core::accuracy::LightAt;
 use marraztu_core::scene::Normals;
 
 /// The approximate number of distinct triangles in a block from which they are drawn as tiny ones.
@@ -44,7 +43,7 @@ impl Shader<f32> {
         // If the list is full or holds larger triangles, the waiting blocks are coloured first.
         if !self.fragments.have_room_for_tiny(runs) || self.waiting.is_empty() {
             self.finish_waiting(group.context, canvas);
-            if group.path.list != ListPath::Tiny {
+            if group.program.others != OtherPath::Each {
                 return false;
             }
             self.fragments.begin_tiny();
@@ -67,14 +66,14 @@ impl Shader<f32> {
     /// Colours the waiting blocks of tiny triangles.
     pub(super) fn finish_tiny(&mut self, group: &Group<'_, f32>, canvas: &mut Canvas<'_>) {
         self.colors.form = Form::Pixels;
-        self.colors.linear = group.context.plan.variants.are_linear();
+        self.colors.linear = group.context.mode().is_linear();
         let Some((shaded, stages)) = group.lit() else { return };
-        let is_done = match group.context.plan.light_at {
-            LightAt::Vertex => self.mix_tiny(group, stages),
-            LightAt::Pixel | LightAt::Sample | LightAt::Face => self.light_tiny(group, shaded),
+        let is_done = match group.program.light {
+            LightOp::Vertices(_) => self.mix_tiny(group, stages),
+            LightOp::Points | LightOp::Faces | LightOp::None => self.light_tiny(group, shaded),
         };
         if is_done {
-            self.path_pixels.tiny += self.fragments.len as u64;
+            self.path_pixels.each += self.fragments.len as u64;
             self.copy_waiting(canvas);
         } else {
             self.color_one_by_one(group.context, canvas);
@@ -103,9 +102,10 @@ impl Shader<f32> {
     /// Computes the barycentric coordinates of the list. Returns whether all triangles are tiny.
     fn weigh_tiny(&mut self, group: &Group<'_, f32>) -> bool {
         let ShadingContext { level, plan, frame, .. } = *group.context;
-        let of = (plan, group.draw, frame.corners_of(group.draw_index));
+        let by = (plan.raster_mode().grid, group.context.mode().interpolation);
+        let of = (group.draw, frame.corners_of(group.draw_index));
         let Self { fragments, tiny, barycentrics, .. } = self;
-        dispatch!(level, simd => weigh(simd, of, fragments, tiny, barycentrics))
+        dispatch!(level, simd => weigh(simd, by, of, (fragments, tiny), barycentrics))
     }
 
     /// Phong shading, like [`Shader::light_pixels`].
@@ -147,7 +147,7 @@ impl Shader<f32> {
 
     /// Gouraud shading, like [`Shader::mix_light`].
     fn mix_tiny(&mut self, group: &Group<'_, f32>, stages: &[Stage]) -> bool {
-        let ShadingContext { level, plan, frame, lit, terms, .. } = *group.context;
+        let ShadingContext { level, frame, lit, terms, .. } = *group.context;
         let mesh = &group.draw.model.mesh;
         let order = mesh.draw_order();
         let points = order.points(group.draw.normal_source);
@@ -190,7 +190,7 @@ impl Shader<f32> {
                 rows[i] = table.diffuse(*place, &lighting, (&mut *batch, &mut *rays));
             }
         }
-        let thresholds = thresholds.of(plan.variants.rounding, fragments);
+        let thresholds = thresholds.of(group.context.mode().rounding, fragments);
         let of = (&**corner_colors, fragments.len);
         dispatch!(level, simd => mix(simd, of, barycentrics, (colors, thresholds)));
         true

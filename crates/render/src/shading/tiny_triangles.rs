@@ -12,13 +12,14 @@ use super::colors::Colors;
 use super::fragments::Fragments;
 use super::interpolate::Look;
 use super::triangle_attributes::{Edges, corners};
-use crate::frame::FramePlan;
 use crate::frame::draw::Draw;
+use crate::frame::raster_mode::Grid;
 use crate::lights::Batch;
 use crate::raster::vertices::fetch;
 use crate::screen::clip::ScreenVertex;
 use crate::screen::perspective::between;
 use crate::simd::{BATCH, Lanes as _, Sixteen, Vec3};
+use marraztu_core::accuracy::Interpolation;
 
 /// The triangles of a list of pixels, one for each pixel.
 #[derive(Debug)]
@@ -72,12 +73,11 @@ pub(crate) type CornerRows<T> = [[[T; 4]; BATCH]; 3];
 #[inline(always)]
 pub(super) fn weigh<S: Simd>(
     simd: S,
-    (plan, draw, vertices): (&FramePlan, &Draw, &[ScreenVertex]),
-    fragments: &Fragments,
-    triangles: &mut TinyTriangles,
+    (grid, interpolation): (Grid, Interpolation),
+    (draw, vertices): (&Draw, &[ScreenVertex]),
+    (fragments, triangles): (&Fragments, &mut TinyTriangles),
     to: &mut Barycentrics<f32>,
 ) -> bool {
-    let (grid, interpolation) = (plan.raster_mode().grid, plan.variants.interpolation);
     let mut odd = 0;
     for at in (0..fragments.len).step_by(16) {
         let [[x0, y0, _, w0], [x1, y1, _, w1], [x2, y2, _, w2]] =

@@ -367,16 +367,12 @@ fn carried<M: Lanes>(lanes: M, rows: &[[M::Number; 4]; SLOTS], at: usize) -> Vec
 
 /// Gathers three numbers of the triangles that some pixels show.
 #[inline(always)]
-pub(crate) fn picked<M: Lanes, const PAGES: usize>(
+pub(crate) fn picked<M: Lanes>(
     lanes: M,
     [x, y, z]: &[[M::Number; SLOTS]; 3],
     slots: M::Slots,
 ) -> Vec3<M::R> {
-    Vec3([
-        lanes.pick::<PAGES>(x, slots),
-        lanes.pick::<PAGES>(y, slots),
-        lanes.pick::<PAGES>(z, slots),
-    ])
+    Vec3([lanes.pick(x, slots), lanes.pick(y, slots), lanes.pick(z, slots)])
 }
 
 impl AttributeNumber for f64 {

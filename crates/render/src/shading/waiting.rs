@@ -15,7 +15,6 @@ use super::path_number::PathNumber;
 use super::runs::{Runs, Shown};
 use super::shader::{Out, Shader, Waiting};
 use super::tiny::MANY;
-use crate::frame::color_path::ListPath;
 use crate::raster::visibility_buffer::{Visible, seen};
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, pixel_of};
 use crate::simd::Bits;
@@ -65,7 +64,7 @@ impl<T: PathNumber> Shader<T> {
         }
         match one_group(context, &self.fragments) {
             // The block becomes the first of a list, if more may follow.
-            Some(group) if self.has_room() && group.path.list != ListPath::Alone => {
+            Some(group) if self.has_room() && group.program.joins => {
                 self.waiting.push(Waiting { from: 0, at });
             }
             Some(group) => self.color_group(&group, &mut Out::Tile(canvas, at)),

@@ -157,14 +157,14 @@ impl<S: Simd> Lanes for Eight<S> {
     }
 
     #[inline(always)]
-    fn slots(self, slots: &[i32], at: usize) -> [i32; 8] {
+    fn slots(self, (slots, _): (&[i32], usize), at: usize) -> [i32; 8] {
         let mut lanes = [0; 8];
         lanes.copy_from_slice(&slots[at..at + 8]);
         lanes
     }
 
     #[inline(always)]
-    fn pick<const PAGES: usize>(self, row: &[f64; SLOTS], slots: [i32; 8]) -> f64x8<S> {
+    fn pick(self, row: &[f64; SLOTS], slots: [i32; 8]) -> f64x8<S> {
         let mut picked = [0.0; 8];
         for (picked, slot) in picked.iter_mut().zip(slots) {
             // The remainder leaves valid slots as they are and spares a bounds check.

@@ -68,11 +68,11 @@ impl Lanes for Exact {
     }
 
     #[expect(clippy::cast_sign_loss, reason = "places are not negative")]
-    fn slots(self, slots: &[i32], at: usize) -> usize {
+    fn slots(self, (slots, _): (&[i32], usize), at: usize) -> usize {
         slots[at] as usize
     }
 
-    fn pick<const PAGES: usize>(self, row: &[f64; SLOTS], slot: usize) -> f64 {
+    fn pick(self, row: &[f64; SLOTS], slot: usize) -> f64 {
         row[slot]
     }
 

@@ -11,42 +11,48 @@ use super::level::is_avx512;
 /// The length of a table.
 pub(crate) const SLOTS: usize = 64;
 
-/// Gathers the numbers of a row at `slots`, all below `PAGES` times sixteen.
+/// Sixteen slots, and how many are in use.
+#[derive(Clone, Copy, Debug)]
+pub struct Slots<S: Simd> {
+    pub(crate) lanes: i32x16<S>,
+    pub(crate) count: usize,
+}
+
+/// Gathers the numbers of a row at some slots.
 #[inline(always)]
-pub(crate) fn pick<S: Simd, const PAGES: usize>(
-    simd: S,
-    row: &[i32; SLOTS],
-    slots: i32x16<S>,
-) -> i32x16<S> {
+pub(crate) fn pick<S: Simd>(simd: S, row: &[i32; SLOTS], slots: Slots<S>) -> i32x16<S> {
+    let Slots { lanes, count } = slots;
     match simd.level() {
+        // The branches are the same for all pixels of a list.
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
         Level::Avx512(token) => {
             // `S` is this level here, so the copy through an array only changes the type.
-            let slots = i32x16::from_slice(token, &<[i32; 16]>::from(slots));
-            // The number of pages is a constant, so only one arm is compiled.
-            let picked = match PAGES {
-                1 => x86::of_one(token, page(token, row, 0), slots),
-                2 => x86::of_two(token, page(token, row, 0), page(token, row, 1), slots),
+            let lanes = i32x16::from_slice(token, &<[i32; 16]>::from(lanes));
+            let picked = if count <= 16 {
+                x86::of_one(token, page(token, row, 0), lanes)
+            } else {
+                let low = x86::of_two(token, page(token, row, 0), page(token, row, 1), lanes);
                 // Two permutations of two registers each cover all 64 slots; a comparison selects
                 // one of them.
-                _ => {
-                    let low = x86::of_two(token, page(token, row, 0), page(token, row, 1), slots);
-                    let high = x86::of_two(token, page(token, row, 2), page(token, row, 3), slots);
-                    fearless_simd::Select::select(slots.simd_lt(32), low, high)
+                if count <= 32 {
+                    low
+                } else {
+                    let high = x86::of_two(token, page(token, row, 2), page(token, row, 3), lanes);
+                    fearless_simd::Select::select(lanes.simd_lt(32), low, high)
                 }
             };
             i32x16::from_slice(simd, &<[i32; 16]>::from(picked))
         }
-        // AVX2 permutes eight lanes: with more than one page, numbers are gathered one by one.
+        // AVX2 permutes eight lanes: from more than sixteen, numbers are gathered one by one.
         #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
-        Level::Avx2(token) if PAGES == 1 => {
-            let slots = i32x16::from_slice(token, &<[i32; 16]>::from(slots));
-            let picked = x86::of_halves(token, page(token, row, 0), slots);
+        Level::Avx2(token) if count <= 16 => {
+            let lanes = i32x16::from_slice(token, &<[i32; 16]>::from(lanes));
+            let picked = x86::of_halves(token, page(token, row, 0), lanes);
             i32x16::from_slice(simd, &<[i32; 16]>::from(picked))
         }
         _ => {
             let mut picked = [0; 16];
-            for (picked, slot) in picked.iter_mut().zip(<[i32; 16]>::from(slots)) {
+            for (picked, slot) in picked.iter_mut().zip(<[i32; 16]>::from(lanes)) {
                 *picked = row[slot.cast_unsigned() as usize % SLOTS];
             }
             i32x16::from_slice(simd, &picked)
@@ -106,27 +112,6 @@ pub(crate) fn most_gathered(level: Level) -> usize {
 fn page<S: Simd>(simd: S, row: &[i32; SLOTS], page: usize) -> i32x16<S> {
     i32x16::from_slice(simd, &row[16 * page..16 * page + 16])
 }
-
-/// Evaluates an expression with the number of pages for `count` slots as a constant.
-macro_rules! paged {
-    ($count:expr, $pages:ident => $what:expr) => {
-        match $count {
-            0..=16 => {
-                const $pages: usize = 1;
-                $what
-            }
-            17..=32 => {
-                const $pages: usize = 2;
-                $what
-            }
-            _ => {
-                const $pages: usize = 4;
-                $what
-            }
-        }
-    };
-}
-pub(crate) use paged;
 
 /// The instructions that permute lanes by the indices in another register.
 #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
@@ -196,15 +181,11 @@ mod tests {
     use super::*;
     use marraztu_core::base::rng::Rng;
 
-    fn picked<const PAGES: usize>(
-        level: Level,
-        row: &[i32; SLOTS],
-        slots: &[i32; 16],
-    ) -> [i32; 16] {
+    fn picked(level: Level, row: &[i32; SLOTS], slots: &[i32; 16], count: usize) -> [i32; 16] {
         let mut out = [0; 16];
         dispatch!(level, simd => {
-            let slots = i32x16::from_slice(simd, slots);
-            pick::<_, PAGES>(simd, row, slots).store_slice(&mut out);
+            let lanes = i32x16::from_slice(simd, slots);
+            pick(simd, row, Slots { lanes, count }).store_slice(&mut out);
         });
         out
     }
@@ -218,9 +199,9 @@ mod tests {
             for level in crate::simd::levels() {
                 let want = |below: u32| slots.map(|slot| row[(slot % below) as usize]);
                 let of = |below: u32| slots.map(|slot| (slot % below).cast_signed());
-                assert_eq!(picked::<1>(level, &row, &of(16)), want(16));
-                assert_eq!(picked::<2>(level, &row, &of(32)), want(32));
-                assert_eq!(picked::<4>(level, &row, &of(64)), want(64));
+                assert_eq!(picked(level, &row, &of(16), 16), want(16));
+                assert_eq!(picked(level, &row, &of(32), 32), want(32));
+                assert_eq!(picked(level, &row, &of(64), 64), want(64));
             }
         }
     }

@@ -32,7 +32,7 @@ pub trait Lanes: Copy {
     type Number: Number;
     /// The vector of [`Self::LANES`] numbers that equations compute with.
     type R: Real;
-    /// A vector of [`Self::LANES`] slots.
+    /// [`Self::LANES`] slots, and how many are in use.
     type Slots: Copy;
     /// The number of lanes.
     const LANES: usize;
@@ -71,10 +71,10 @@ pub trait Lanes: Copy {
     }
     /// Repeats one number in all lanes.
     fn set(self, number: Self::Number) -> Self::R;
-    /// Loads slots for [`Self::pick`].
-    fn slots(self, slots: &[i32], at: usize) -> Self::Slots;
-    /// Gathers the numbers of a row at some slots, all below `PAGES` times sixteen.
-    fn pick<const PAGES: usize>(self, row: &[Self::Number; SLOTS], slots: Self::Slots) -> Self::R;
+    /// Loads slots for [`Self::pick`], all below `count`.
+    fn slots(self, slots: (&[i32], usize), at: usize) -> Self::Slots;
+    /// Gathers the numbers of a row at some slots.
+    fn pick(self, row: &[Self::Number; SLOTS], slots: Self::Slots) -> Self::R;
     /// Returns whether any number is more than its counterpart.
     fn any_more(self, a: Self::R, b: Self::R) -> bool;
 }

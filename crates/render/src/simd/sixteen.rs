@@ -5,7 +5,7 @@ use fearless_simd::{
     SimdMask as _, f32x16, i32x16, u32x16,
 };
 
-use super::gather::{SLOTS, pick};
+use super::gather::{SLOTS, Slots, pick};
 use super::lanes::{BATCH, Kernel, Lanes, Number, PARTS};
 use super::level::dispatch;
 use super::real::Real;
@@ -19,7 +19,7 @@ pub struct Sixteen<S>(pub S);
 impl<S: Simd> Lanes for Sixteen<S> {
     type Number = f32;
     type R = f32x16<S>;
-    type Slots = i32x16<S>;
+    type Slots = Slots<S>;
     const LANES: usize = 16;
 
     #[inline(always)]
@@ -106,13 +106,13 @@ impl<S: Simd> Lanes for Sixteen<S> {
     }
 
     #[inline(always)]
-    fn slots(self, slots: &[i32], at: usize) -> i32x16<S> {
-        i32x16::from_slice(self.0, &slots[at..at + 16])
+    fn slots(self, (slots, count): (&[i32], usize), at: usize) -> Slots<S> {
+        Slots { lanes: i32x16::from_slice(self.0, &slots[at..at + 16]), count }
     }
 
     #[inline(always)]
-    fn pick<const PAGES: usize>(self, row: &[f32; SLOTS], slots: i32x16<S>) -> f32x16<S> {
-        pick::<S, PAGES>(self.0, bytemuck::cast_ref(row), slots).bitcast()
+    fn pick(self, row: &[f32; SLOTS], slots: Slots<S>) -> f32x16<S> {
+        pick(self.0, bytemuck::cast_ref(row), slots).bitcast()
     }
 
     #[inline(always)]
