@@ -61,7 +61,7 @@ impl BlockTriangle {
     #[inline(always)]
     pub(crate) fn draw<S: Simd>(
         &self,
-        format: impl Format,
+        format: Format,
         simd: S,
         at: (usize, [i32; 2]),
         whole: bool,

@@ -167,7 +167,7 @@ impl FloatTriangle {
     #[inline(always)]
     pub(crate) fn draw<S: Simd>(
         &self,
-        format: impl Format,
+        format: Format,
         simd: S,
         (block, shift): (usize, [i32; 2]),
         whole: bool,

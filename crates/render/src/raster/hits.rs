@@ -256,9 +256,9 @@ impl Hits {
 
     /// Calls `take` with the index and entry of each hit in a tile.
     #[inline(always)]
-    pub(crate) fn each<S: Simd, D: Format>(
+    pub(crate) fn each<S: Simd>(
         &self,
-        (format, simd): (D, S),
+        (format, simd): (Format, S),
         tile: usize,
         mut take: impl FnMut(u32, u64),
     ) {
@@ -267,7 +267,7 @@ impl Hits {
             let Page { place, word, count, previous } = &self.pages[page as usize];
             // Fetched while this page is read.
             self.pages[*previous as usize].prefetch();
-            if D::KEEPS_BITS {
+            if format.keeps_bits() {
                 place[..*count].iter().zip(word).for_each(
                     #[inline(always)]
                     |(place, word)| take(*place, *word),

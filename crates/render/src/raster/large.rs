@@ -192,7 +192,7 @@ impl Large {
     #[inline(always)]
     pub(crate) fn draw<S: Simd, I: InFront<S>>(
         &self,
-        format: impl Format,
+        format: Format,
         simd: S,
         (block, shift): (usize, [i32; 2]),
         whole: bool,
@@ -241,7 +241,7 @@ impl Large {
     #[inline(always)]
     pub(crate) fn draw_samples<S: Simd>(
         &self,
-        format: impl Format,
+        format: Format,
         simd: S,
         block: usize,
         whole: bool,

@@ -19,7 +19,7 @@ use fearless_simd::{Level, Simd};
 use super::beyond;
 use super::bins::LargeTriangle;
 use super::block_triangle::BlockTriangle;
-use super::depth_format::{Any, Format as _, depths_between};
+use super::depth_format::{Format, depths_between};
 use super::edges_in_floats::{FloatTriangle, in_pixels};
 use super::entries::word;
 use super::geometry::ScreenGeometry;
@@ -125,7 +125,7 @@ impl Layers {
         // Hits are sorted into lists per sample; larger triangles are only classified by block.
         for bins in frame.transparent_bins() {
             let samples = self.sample_positions.count();
-            let format = Any(self.depth_format);
+            let format = Format(self.depth_format);
             dispatch!(level, simd => bins.hits.each((format, simd), tile, |place, word| {
                 self.add_hit(place as usize, samples, word);
             }));
@@ -232,7 +232,7 @@ impl Layers {
             points::cover(plan, draw, own, (self.bounds, shift), &mut |x, y, depth| {
                 let (x, y) = (x - self.bounds.left, y - self.bounds.top);
                 let place = (block_at(x, y) * BLOCK_PIXELS + within(x, y)) * count + sample;
-                let key = Any(self.depth_format).key(depth);
+                let key = Format(self.depth_format).key(depth);
                 let nearest: &mut u32 = all.entry(place).or_default();
                 *nearest = key.max(*nearest);
             });
@@ -305,7 +305,7 @@ impl Layers {
         opaque: &[u64; BLOCK_PIXELS],
     ) {
         let Self { large, block: held, depth_format, .. } = self;
-        let format = Any(*depth_format);
+        let format = Format(*depth_format);
         // A triangle behind the farthest opaque entry is hidden at every pixel.
         let farthest = opaque.iter().fold(u64::MAX, |least, word| *word.min(&least));
         let mut plane = [0; BLOCK_PIXELS];

@@ -434,8 +434,9 @@ mod tests {
     use crate::simd::dispatch;
     use fearless_simd::Level;
 
-    use super::super::depth_format::Reversed;
+    use super::super::depth_format::Format;
     use super::*;
+    use marraztu_core::accuracy::DepthFormat;
     use marraztu_core::base::rng::Rng;
 
     const EVERYWHERE: PixelBox = PixelBox { left: -99, top: -99, right: 199, bottom: 199 };
@@ -492,7 +493,7 @@ mod tests {
                 pixels.push((x, tile / 2 * TILE + block / 8 * 8 + within / 8));
             };
             dispatch!(Level::new(), simd => {
-                hits.each((Reversed, simd), tile, |place, _| take(place));
+                hits.each((Format(DepthFormat::default()), simd), tile, |place, _| take(place));
             });
         }
         pixels.sort_unstable();

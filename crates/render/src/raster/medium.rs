@@ -156,7 +156,7 @@ impl<S: Simd> Medium<S> {
     #[inline(always)]
     pub(crate) fn draw(
         &self,
-        format: impl Format,
+        format: Format,
         simd: S,
         block: usize,
         area: PixelBox,
@@ -191,7 +191,7 @@ impl<S: Simd> Medium<S> {
     #[inline(always)]
     pub(crate) fn draw_samples(
         &self,
-        format: impl Format,
+        format: Format,
         simd: S,
         block: usize,
         area: PixelBox,

@@ -86,7 +86,7 @@ impl ScanLines {
     #[inline(always)]
     pub(crate) fn draw<S: Simd>(
         &self,
-        format: impl Format,
+        format: Format,
         simd: S,
         block: usize,
         holes: Option<&BlockHoles<'_, '_, '_>>,

@@ -26,7 +26,7 @@ use fearless_simd::{Level, Simd};
 use self::scratch::{Cutouts, SmallTriangles};
 use super::bins::Bins;
 use super::block_triangle::BlockTriangle;
-use super::depth_format::{Any, Format as _, depths_between, with_format};
+use super::depth_format::{Format, depths_between};
 use super::entries::{FOUR, word};
 use super::geometry::ScreenGeometry;
 use super::lines;
@@ -319,14 +319,12 @@ impl Visibility {
         block: usize,
         whole: bool,
     ) {
-        let (positions, format) = (self.sample_positions, self.depth_format);
+        let (positions, format) = (self.sample_positions, Format(self.depth_format));
         if N > 1
             && let BlockTriangle::Large(large) = triangle
         {
             let of = (&positions, self.entries_mut::<N>(block));
-            dispatch!(level, simd => with_format!(format, D => {
-                large.draw_samples(D::of(format), simd, block, whole, of);
-            }));
+            dispatch!(level, simd => large.draw_samples(format, simd, block, whole, of));
             return;
         }
         dispatch!(level, simd => for sample in 0..positions.count_in::<N>() {
@@ -335,9 +333,7 @@ impl Visibility {
                 block,
                 sample,
                 #[inline(always)]
-                |plane| with_format!(format, D => {
-                    triangle.draw(D::of(format), simd, (block, shift), whole, None, plane);
-                }),
+                |plane| triangle.draw(format, simd, (block, shift), whole, None, plane),
             );
         });
     }
@@ -360,15 +356,15 @@ impl Visibility {
     /// Returns the key of a depth.
     #[inline(always)]
     fn key(&self, depth: f32) -> u32 {
-        Any(self.depth_format).key(depth)
+        Format(self.depth_format).key(depth)
     }
 
     /// Draws the hits of a tile from the bins of one thread.
     #[inline(always)]
     fn draw_hits<S: Simd, const N: usize>(&mut self, simd: S, bins: &Bins, tile: usize) {
         let samples = self.sample_positions.count_in::<N>();
-        with_format!(self.depth_format, D => bins.hits.each(
-            (D::of(self.depth_format), simd),
+        bins.hits.each(
+            (Format(self.depth_format), simd),
             tile,
             #[inline(always)]
             |place, word| {
@@ -381,14 +377,14 @@ impl Visibility {
                 let old = &mut self.buffer.0[place];
                 *old = word.max(*old);
             },
-        ));
+        );
     }
 
     /// Draws the long lines of a tile.
     #[inline(always)]
     fn draw_lines<const N: usize>(&mut self, level: Level, bins: &Bins, tile: usize) {
-        with_format!(self.depth_format, D => for &place in &bins.tiles[tile].lines {
-            let format = D::of(self.depth_format);
+        for &place in &bins.tiles[tile].lines {
+            let format = Format(self.depth_format);
             for sample in 0..self.sample_positions.count_in::<N>() {
                 // The line moves instead of the sample, which keeps the arithmetic exact.
                 let line =
@@ -403,7 +399,7 @@ impl Visibility {
                     },
                 );
             }
-        });
+        }
     }
 
     /// Draws the large triangles of a tile without the alpha test.

@@ -53,7 +53,7 @@ pub(crate) const fn seen_number(number: u32) -> Visible {
 /// the bits of infinity, and every processor has a maximum of f64.
 #[inline(always)]
 pub(crate) fn put_rows<S: Simd>(
-    format: impl Format,
+    format: Format,
     simd: S,
     covered: mask32x16<S>,
     depth: f32x16<S>,
@@ -72,7 +72,7 @@ pub(crate) fn put_rows<S: Simd>(
 /// [`put_rows`].
 #[inline(always)]
 pub(crate) fn in_front<S: Simd>(
-    format: impl Format,
+    format: Format,
     simd: S,
     covered: mask32x16<S>,
     depth: f32x16<S>,
@@ -88,7 +88,7 @@ pub(crate) fn in_front<S: Simd>(
 /// Returns entries as f64 for covered pixels, and 0 for all others.
 #[inline(always)]
 fn entries<S: Simd>(
-    format: impl Format,
+    format: Format,
     simd: S,
     covered: mask32x16<S>,
     depth: f32x16<S>,

@@ -398,7 +398,7 @@ mod tests {
         assert!(found.linear == linear.linear);
         let (fragments, attributes) = (&fragments, &attributes);
         let to = &mut linear;
-        let all = Weigh::<f32, 1> { interpolation, clamps: false, fragments, attributes, to };
+        let all = Weigh::<f32> { interpolation, clamps: false, fragments, attributes, to };
         dispatch!(level, simd => all.run(Sixteen(simd)));
         assert!(found.weights == linear.weights && found.w == linear.w);
     }

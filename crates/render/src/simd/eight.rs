@@ -243,7 +243,7 @@ mod tests {
             let mut fours = [[0.0; 4]; BATCH];
             for at in (0..SLOTS).step_by(M::LANES) {
                 let x = lanes.load(row, at);
-                let picked = lanes.pick::<4>(row, lanes.slots(slots, at));
+                let picked = lanes.pick(row, lanes.slots((slots, SLOTS), at));
                 let values = [
                     x.reciprocal_root(),
                     x.power(power),

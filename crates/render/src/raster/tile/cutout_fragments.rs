@@ -87,7 +87,7 @@ impl Fragments {
     pub(super) fn put<S: Simd>(
         &self,
         simd: S,
-        format: impl Format,
+        format: Format,
         (test, [left, top]): (Option<&AlphaTest<'_, '_>>, [i32; 2]),
         (number, samples): (u32, usize),
         buffer: &mut [u64; MANY * PIXELS],

@@ -9,7 +9,7 @@ use crate::frame::FramePlan;
 use crate::raster::alpha_test::{AlphaSurface, AlphaTest, BlockHoles};
 use crate::raster::bins::LargeTriangle;
 use crate::raster::block_triangle::BlockTriangle;
-use crate::raster::depth_format::Any;
+use crate::raster::depth_format::Format;
 use crate::raster::geometry::ScreenGeometry;
 use crate::raster::large::{Large, Touched};
 use crate::screen::tiles::BLOCK_PIXELS;
@@ -84,7 +84,7 @@ impl Visibility {
         tests: &[Option<AlphaTest<'_, '_>>],
     ) {
         self.write::<N>(simd.level(), block);
-        let (first, format) = (self.corner(block), Any(self.depth_format));
+        let (first, format) = (self.corner(block), Format(self.depth_format));
         for (sample, test) in tests.iter().enumerate() {
             let at = (block, self.sample_positions.shift::<N>(sample));
             let holes = test.as_ref().map(|test| BlockHoles { test, first });
@@ -144,7 +144,7 @@ impl Visibility {
     where
         'a: 'b,
     {
-        let format = Any(self.depth_format);
+        let format = Format(self.depth_format);
         let samples = self.sample_positions.count_in::<N>();
         for sample in 0..samples {
             let shift = self.sample_positions.shift::<N>(sample);

@@ -9,7 +9,7 @@ use crate::raster::alpha_test::{AlphaSurface, AlphaTest, BlockHoles};
 use crate::raster::beyond::reach;
 use crate::raster::bins::Bins;
 use crate::raster::block_triangle::BlockTriangle;
-use crate::raster::depth_format::Any;
+use crate::raster::depth_format::Format;
 use crate::raster::edges_in_floats::{FloatTriangle, in_pixels};
 use crate::raster::geometry::ScreenGeometry;
 use crate::raster::scan_lines::ScanLines;
@@ -95,7 +95,7 @@ impl Visibility {
         (corners, depths, number): ([[f32; 2]; 3], [f32; 3], u32),
         tests: &[Option<AlphaTest<'_, '_>>],
     ) {
-        let format = Any(self.depth_format);
+        let format = Format(self.depth_format);
         for (sample, test) in tests.iter().enumerate() {
             let shift = self.sample_positions.shift::<N>(sample);
             let [dx, dy] = in_pixels(shift);

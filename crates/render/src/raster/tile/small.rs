@@ -7,7 +7,7 @@ use fearless_simd::{Select as _, Simd, SimdBase as _, SimdMask as _, f64x4, mask
 use super::Visibility;
 use super::scratch::SmallTriangles;
 use crate::raster::bins::Bins;
-use crate::raster::depth_format::{Format, with_format};
+use crate::raster::depth_format::Format;
 use crate::raster::entries::{FOUR, put_samples};
 use crate::raster::hits::PACK;
 use crate::raster::queue::Pack;
@@ -45,9 +45,7 @@ impl Visibility {
         simd.vectorize(
             #[inline(always)]
             || {
-                with_format!(self.depth_format, D => {
-                    small.draw::<S, D, N>(simd, D::of(self.depth_format), (bins, tile), self);
-                });
+                small.draw::<S, N>(simd, Format(self.depth_format), (bins, tile), self);
             },
         );
         self.small = Some(small);
@@ -57,27 +55,27 @@ impl Visibility {
 impl SmallTriangles {
     /// Draws all triangles that wait for a tile.
     #[inline(always)]
-    fn draw<S: Simd, D: Format, const N: usize>(
+    fn draw<S: Simd, const N: usize>(
         &mut self,
         simd: S,
-        format: D,
+        format: Format,
         of: (&[Bins], usize),
         into: &mut Visibility,
     ) {
         for size in 0..SIZES {
             if size + 1 < SIZES {
-                self.draw_size::<S, D, Most<S>, N>(simd, format, (of, size), into);
+                self.draw_size::<S, Most<S>, N>(simd, format, (of, size), into);
             } else {
-                self.draw_size::<S, D, Last<S>, N>(simd, format, (of, size), into);
+                self.draw_size::<S, Last<S>, N>(simd, format, (of, size), into);
             }
         }
     }
 
     #[inline(always)]
-    fn draw_size<S: Simd, D: Format, E: Edges<S>, const N: usize>(
+    fn draw_size<S: Simd, E: Edges<S>, const N: usize>(
         &mut self,
         simd: S,
-        format: D,
+        format: Format,
         ((bins, tile), size): ((&[Bins], usize), usize),
         into: &mut Visibility,
     ) {
@@ -91,29 +89,29 @@ impl SmallTriangles {
                     // Full packs are drawn directly. Incomplete ones are collected, to keep all
                     // lanes busy.
                     if count == PACK {
-                        return self.draw_pack::<S, D, E, N>(format, pack, into);
+                        return self.draw_pack::<S, E, N>(format, pack, into);
                     }
                     let some = mask32x16::from_bitmask(simd, (1 << count) - 1);
                     if self.rest.add(pack, some, count) {
-                        self.draw_rest::<S, D, E, N>(simd, format, into);
+                        self.draw_rest::<S, E, N>(simd, format, into);
                     }
                 },
             );
         }
-        self.draw_rest::<S, D, E, N>(simd, format, into);
+        self.draw_rest::<S, E, N>(simd, format, into);
     }
 
     /// Draws the left-over triangles.
     #[inline(always)]
-    fn draw_rest<S: Simd, D: Format, E: Edges<S>, const N: usize>(
+    fn draw_rest<S: Simd, E: Edges<S>, const N: usize>(
         &mut self,
         simd: S,
-        format: D,
+        format: Format,
         into: &mut Visibility,
     ) {
         for at in (0..self.rest.waiting()).step_by(PACK) {
             let pack = self.rest.pack(simd, at);
-            self.draw_pack::<S, D, E, N>(format, &pack, into);
+            self.draw_pack::<S, E, N>(format, &pack, into);
         }
         self.rest.forget();
     }
@@ -122,22 +120,22 @@ impl SmallTriangles {
     ///
     /// Compiled as a separate function because it is called from several places.
     #[inline(always)]
-    fn draw_pack<S: Simd, D: Format, E: Edges<S>, const N: usize>(
+    fn draw_pack<S: Simd, E: Edges<S>, const N: usize>(
         &mut self,
-        format: D,
+        format: Format,
         pack: &Pack<S>,
         into: &mut Visibility,
     ) {
         pack[0].simd.vectorize(
             #[inline(always)]
-            || self.draw_pack_in::<S, D, E, N>(format, pack, into),
+            || self.draw_pack_in::<S, E, N>(format, pack, into),
         );
     }
 
     #[inline(always)]
-    fn draw_pack_in<S: Simd, D: Format, E: Edges<S>, const N: usize>(
+    fn draw_pack_in<S: Simd, E: Edges<S>, const N: usize>(
         &mut self,
-        format: D,
+        format: Format,
         pack: &Pack<S>,
         into: &mut Visibility,
     ) {

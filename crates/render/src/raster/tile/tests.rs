@@ -2,7 +2,7 @@ use fearless_simd::{SimdBase as _, SimdMask as _, i32x16, mask32x16};
 
 use super::*;
 use crate::raster::bins::LargeTriangle;
-use crate::raster::depth_format::Reversed;
+use crate::raster::depth_format::Format;
 use crate::raster::edges_in_floats::FloatTriangle;
 use crate::raster::large::Large;
 use crate::raster::queue::{ROWS, SMALL};
@@ -368,7 +368,7 @@ fn edges_in_floats_decide_by_their_formula_alone_however_large_a_triangle_is() {
                 (some, whole) = (touched.some, touched.whole);
                 drawn(|block, plane| {
                     let at = (block, [0; 2]);
-                    triangle.draw(Reversed, simd, at, false, None, plane);
+                    triangle.draw(Format(DepthFormat::default()), simd, at, false, None, plane);
                 })
             });
             assert_eq!(got, want, "{corners:?}");
@@ -407,7 +407,7 @@ fn a_square_of_two_halves_is_covered_twice_on_an_edge_and_at_every_seam() {
     let scan_lines = |corners: [[f32; 2]; 3]| {
         let rows = ScanLines::new(corners, [0.5; 3], 0, TILE_BOX).unwrap();
         dispatch!(Level::new(), simd => drawn(|block, plane| {
-            rows.draw(Reversed, simd, block, None, plane);
+            rows.draw(Format(DepthFormat::default()), simd, block, None, plane);
         }))
     };
     assert_eq!(count([5.2, 5.2], &scan_lines), (441, 441 + 21));

@@ -6,7 +6,7 @@ use fearless_simd::{Level, Simd};
 use super::Visibility;
 use crate::raster::bins::LargeTriangle;
 use crate::raster::block_triangle::BlockTriangle;
-use crate::raster::depth_format::{Format as _, with_format};
+use crate::raster::depth_format::Format;
 use crate::raster::entries::word;
 use crate::raster::large::{Large, Touched};
 use crate::raster::medium::{self, Medium};
@@ -68,7 +68,7 @@ impl Visibility {
         let Touched { some, whole } = medium.blocks::<N>(simd, area, &self.sample_positions);
         let high = self.key(medium.high);
         let (mut large, mut place) = (None, None);
-        with_format!(self.depth_format, D => for block in Bits(some) {
+        for block in Bits(some) {
             let block = block % BLOCK_PIXELS;
             if high < self.farthest[block] {
                 continue;
@@ -85,14 +85,14 @@ impl Visibility {
                 }
             }
             self.write::<N>(simd.level(), block);
-            let (format, positions) = (D::of(self.depth_format), self.sample_positions);
+            let (format, positions) = (Format(self.depth_format), self.sample_positions);
             let entries = self.entries_mut::<N>(block);
             if N > 1 {
                 medium.draw_samples(format, simd, block, area, (&positions, entries));
             } else if let Some(plane) = entries.first_chunk_mut() {
                 medium.draw(format, simd, block, area, plane);
             }
-        });
+        }
     }
 
     /// Draws a triangle into a block that it covers fully. `place` is its index in `large`, once it
