@@ -2,9 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use marraztu_core::accuracy::{self, Samples, Settings};
+use marraztu_core::accuracy::{self, AXES, Axis, Samples, Settings};
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::{ItemId, ObjectId};
+use marraztu_lab::budget::{Goal, Measured, search};
+use marraztu_lab::picture_source::Studio;
+use marraztu_lab::timing::WallClock;
 use marraztu_lab::{cost, pixel};
 use marraztu_render::{
     AxesConvention, Cancelled, Layer, LayerNames, LayerSet, LayerValues, Layers, NormalSpace,
@@ -52,6 +55,17 @@ struct Explanation {
     surface: Option<Surface>,
     /// The terms of the colour, in steps of a byte.
     terms: Vec<(String, [f64; 3])>,
+}
+
+/// Settings for a budget.
+#[derive(IntoPyObject)]
+struct Fit {
+    /// The choices that differ from the default or the scene, by axis, and the samples.
+    accuracy: BTreeMap<String, &'static str>,
+    milliseconds: f64,
+    error: f64,
+    error_interval: [f64; 2],
+    is_reached: bool,
 }
 
 /// An effect of the renderer on an item, or on the whole frame.
@@ -228,6 +242,45 @@ impl Shot {
             arrays.set_item(layer.name(), array)?;
         }
         Ok(arrays)
+    }
+
+    /// Finds settings for a budget: "within" milliseconds, with at most an "error", or "unseen".
+    fn fitted(
+        &self,
+        py: Python<'_>,
+        threads: usize,
+        kind: &str,
+        limit: f64,
+    ) -> PyResult<(Self, Fit)> {
+        let goal = match kind {
+            "within" => Goal::Within(limit),
+            "error" => Goal::Error(limit),
+            _ => Goal::Unseen,
+        };
+        work(py, threads, |_| {
+            let mut studio = Studio::new(self.shot.clone());
+            let answer = search(&mut studio, &mut WallClock::default(), &self.shot, (goal, &[]));
+            let Measured { settings, ms, error, .. } = answer.measured;
+            let is_stated = |axis: &&Axis| {
+                let word = axis.chosen(&settings).word;
+                let differs = |other: &Settings| axis.chosen(other).word != word;
+                differs(&Settings::default())
+                    || differs(&self.shot.settings)
+                    || axis.key == "samples"
+            };
+            let stated = AXES.iter().filter(is_stated);
+            let accuracy =
+                stated.map(|axis| (axis.key.replace('-', "_"), axis.chosen(&settings).word));
+            let fit = Fit {
+                accuracy: accuracy.collect(),
+                milliseconds: ms.value,
+                error: error.value,
+                error_interval: error.interval,
+                is_reached: answer.is_reached,
+            };
+            let shot = accuracy::Shot { settings, ..self.shot.clone() };
+            Ok((Self::new(shot, self.ids.clone()), fit))
+        })
     }
 
     /// Explains a pixel: its surface and the terms of its colour, at the pixel's centre.

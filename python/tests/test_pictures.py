@@ -219,6 +219,20 @@ def test_a_plan_counts_pixels_and_gives_reasons(cam):
     assert not texture.is_on and texture.why
 
 
+def test_settings_for_a_budget_keep_to_it_and_serve_other_pictures(cam):
+    scene = mz.Scene([cam])
+    fit = scene.shot(96, 64).fitted(error=20)
+    assert fit.is_reached and fit.error <= 20
+    low, high = fit.error_interval
+    assert low <= fit.error <= high and fit.milliseconds > 0
+    again = scene.render(96, 64, **fit.accuracy)
+    assert np.array_equal(fit.shot.render().rgba, again.rgba)
+    assert not scene.shot(96, 64).fitted(within=1e-9).is_reached
+    for wrong in ({}, {"within": 5, "error": 1}, {"error": 0}, {"within": float("nan")}):
+        with pytest.raises(ValueError, match="one of within|a number above 0"):
+            scene.shot(96, 64).fitted(**wrong)
+
+
 def test_the_axes_are_arguments(cam):
     axes = {axis.name: axis for axis in mz.axes()}
     assert "nearest" in axes["filter"].choices and "shadow_method" in axes

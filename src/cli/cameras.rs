@@ -166,6 +166,8 @@ pub(crate) struct Cameras {
     name: String,
     earlier: Earlier,
     split: Option<Split>,
+    /// The file of seed points, if there is one.
+    ply: Option<&'static str>,
     folders: BTreeMap<PathBuf, FolderCameras>,
     spool: Option<Spool>,
 }
@@ -179,9 +181,13 @@ pub(crate) enum Earlier {
 
 impl Cameras {
     /// Begins to collect cameras for files of this name, in the folders of the pictures, and for
-    /// the parts of a data set.
-    pub(crate) fn new(name: String, earlier: Earlier, split: Option<Split>) -> Self {
-        Self { name, earlier, split, folders: BTreeMap::new(), spool: None }
+    /// the parts of a data set, if it has any, with its file of seed points.
+    pub(crate) fn new(
+        name: String,
+        earlier: Earlier,
+        (split, ply): (Option<Split>, Option<&'static str>),
+    ) -> Self {
+        Self { name, earlier, split, ply, folders: BTreeMap::new(), spool: None }
     }
 
     /// Adds the camera of a picture. Fails if it cannot be written.
@@ -207,7 +213,10 @@ impl Cameras {
             }
             let mut file = NewFile::begin(&path)?;
             let program = json!(env!("CARGO_PKG_VERSION"));
-            let head = format!("{{\"marraztu\": {program}, \"pixel_center\": 0.5,\n\"ids\": {{\n");
+            let ply = self.ply.map(|ply| format!("\"ply_file_path\": \"{ply}\",\n"));
+            let ply = ply.unwrap_or_default();
+            let head =
+                format!("{{\"marraztu\": {program}, \"pixel_center\": 0.5,\n{ply}\"ids\": {{\n");
             file.push(head.as_bytes())?;
             for (i, (scene, place)) in cameras.ids.iter().enumerate() {
                 let begin = if i == 0 { "" } else { ",\n" };

@@ -182,7 +182,7 @@ fn written(
         let shot = stage.shot(picture.size);
         let files = (target.folder(), &files[..]);
         let frame = CameraFrame::new(&shot, files, scene, (options, names.as_ref()));
-        let mut cameras = Cameras::new(CAMERAS.to_owned(), Earlier::Kept, None);
+        let mut cameras = Cameras::new(CAMERAS.to_owned(), Earlier::Kept, (None, None));
         cameras.add(frame)?;
         cameras.write()?;
     }

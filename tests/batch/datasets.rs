@@ -382,6 +382,53 @@ fn a_split_names_each_picture_once_in_the_layout_of_nerfs_synthetic_scenes() {
     ends_with(2, folder.path(), &[&draw[..], &bop, &SMALL].concat());
 }
 
+/// The properties and their order are those that the reader of 3D Gaussian Splatting expects.
+#[test]
+fn seed_points_lie_on_the_surfaces_in_proportion_to_their_area() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    std::fs::write(at("box.obj"), format!("mtllib box.mtl\nusemtl red\n{BOX}")).unwrap();
+    std::fs::write(at("box.mtl"), "newmtl red\nKd 1 0.5 0\n").unwrap();
+    let draw = ["batch", "box.obj", "--views", "2", "--dataset", "nerf", "--out", "set"];
+    let draw = [&draw[..], &SMALL, &["--seed-points", "7000"]].concat();
+    ends_with(0, folder.path(), &draw);
+    assert_eq!(json(&at("set/box/transforms.json"))["ply_file_path"], "points3d.ply");
+    let path = at("set/box/points3d.ply");
+    let ply = std::fs::read(&path).unwrap();
+    let end = ply.windows(11).position(|it| it == b"end_header\n").unwrap() + 11;
+    let head = std::str::from_utf8(&ply[..end]).unwrap();
+    let names = head.lines().filter_map(|line| line.strip_prefix("property "));
+    let names: Vec<&str> = names.filter_map(|line| line.split(' ').nth(1)).collect();
+    assert_eq!(names, ["x", "y", "z", "nx", "ny", "nz", "red", "green", "blue"]);
+    assert!(head.contains("element vertex 7000\n"), "{head}");
+    let points = ply[end..].as_chunks::<27>();
+    assert_eq!((points.0.len(), points.1.len()), (7000, 0));
+    let mut counts = [0; 3];
+    for point in points.0 {
+        let number = |i: usize| f32::from_le_bytes(point[4 * i..4 * i + 4].try_into().unwrap());
+        let axis = (0..3).find(|axis| number(3 + axis).abs() == 1.0).unwrap();
+        let halves = [0.2, 0.1, 0.05_f32];
+        assert!((number(axis) - number(3 + axis) * halves[axis]).abs() < 1e-6);
+        assert!((0..3).all(|i| number(i).abs() <= halves[i] + 1e-6));
+        assert_eq!(point[24..], [255, 128, 0]);
+        counts[axis] += 1;
+    }
+    // Faces of 0.2 x 0.1, 0.4 x 0.1 and 0.4 x 0.2.
+    for (count, want) in counts.into_iter().zip([1000, 2000, 4000_i32]) {
+        assert!((count - want).abs() <= 2, "{counts:?}");
+    }
+    // A lost file is written again, and one of another program never replaced.
+    let again = [&draw[..], &["--resume"]].concat();
+    std::fs::remove_file(&path).unwrap();
+    ends_with(0, folder.path(), &again);
+    assert!(std::fs::read(&path).unwrap() == ply);
+    std::fs::write(&path, "mine").unwrap();
+    let (_, err) = ends_with(1, folder.path(), &draw);
+    assert!(err.contains("is of another program"), "{err}");
+    assert_eq!(std::fs::read(&path).unwrap(), b"mine");
+    ends_with(2, folder.path(), &["batch", "box.obj", "--out", "x.png", "--seed-points", "9"]);
+}
+
 /// Parts draw pictures and masks, and a last run writes the tables.
 #[test]
 fn a_data_set_drawn_in_parts_equals_one_drawn_at_once() {

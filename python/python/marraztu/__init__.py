@@ -21,7 +21,7 @@ from ._marraztu import LoadError, __version__
 from ._mesh import FindingWarning, Mesh
 from ._picture import Picture
 from ._scene import Node, Scene
-from ._shot import Effect, Explanation, Shot, Surface, render_many
+from ._shot import Effect, Explanation, Fit, Shot, Surface, render_many
 from ._values import Light, Material, axes
 
 __all__ = [
@@ -29,6 +29,7 @@ __all__ = [
     "Effect",
     "Explanation",
     "FindingWarning",
+    "Fit",
     "Light",
     "LoadError",
     "Material",

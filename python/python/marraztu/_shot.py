@@ -62,6 +62,23 @@ class Effect(NamedTuple):
     """The number of pixels that it contributes to."""
 
 
+class Fit(NamedTuple):
+    """The settings for a budget, as `Shot.fitted` finds them."""
+
+    shot: Shot
+    """The shot with these settings."""
+    accuracy: dict[str, str]
+    """The settings, for other pictures: `scene.render(640, 480, **fit.accuracy)`."""
+    milliseconds: float
+    """The time of a picture on this machine."""
+    error: float
+    """The root mean square difference from the ideal, 256 samples per pixel, in steps of 255."""
+    error_interval: tuple[float, float]
+    """The 95% interval of the error."""
+    is_reached: bool
+    """Whether the settings keep to the budget. If none do, they are the nearest ones."""
+
+
 class Shot:
     """A snapshot of a scene with everything that a picture depends on. `Scene.shot` makes it."""
 
@@ -111,6 +128,34 @@ class Shot:
             raise ValueError("threads is at least 0")
         arrays = self._shot.render(threads or 0, list(self.layers), self.normals, self.transparent)
         return Picture(self, arrays)
+
+    def fitted(
+        self,
+        *,
+        within: float | None = None,
+        error: float | None = None,
+        unseen: bool = False,
+        threads: int | None = None,
+    ) -> Fit:
+        """Finds settings for a budget, by drawing parts of the picture: it takes some seconds.
+
+        One of the budgets is given: `within` for the most exact settings for pictures that this
+        machine draws in this number of milliseconds; `error` for the fastest ones with at most
+        this error; `unseen` for the fastest whose pictures look like the ideal. They are those of
+        `marraztu render --within`, `--error` and `--unseen`.
+        """
+        budgets = {"within": within, "error": error, "unseen": 0.0 if unseen else None}
+        given = [(kind, limit) for kind, limit in budgets.items() if limit is not None]
+        if len(given) != 1:
+            raise ValueError("one of within, error and unseen is given")
+        kind, limit = given[0]
+        if not (unseen or 0 < limit < float("inf")):
+            raise ValueError(f"{kind} is a number above 0, not {limit}")
+        if threads is not None and threads < 0:
+            raise ValueError("threads is at least 0")
+        kernel, fit = self._shot.fitted(threads or 0, kind, limit)
+        shot = Shot(kernel, self.layers, self.normals, self.transparent, self.unit)
+        return Fit(shot, **{**fit, "error_interval": tuple(fit["error_interval"])})
 
     def explain(self, x: int, y: int) -> Explanation:
         """Explains the pixel in column x of row y, from the upper left."""

@@ -26,6 +26,7 @@ mod outputs;
 pub(super) mod report;
 mod results;
 mod rows;
+mod seeds;
 mod shard;
 mod sheets;
 mod studio;
@@ -147,6 +148,11 @@ pub(crate) struct Batch {
     /// splatting
     #[arg(long, value_name = "TRAIN,VAL,TEST", value_parser = split, requires = "dataset")]
     split: Option<Split>,
+    /// With "--dataset nerf", write this many points on the surfaces of each model to
+    /// points3d.ply, from which Gaussian splatting starts: 100000 is usual
+    #[arg(long, value_name = "N", requires = "dataset")]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
+    seed_points: Option<u32>,
     /// Place the lights of a data set for each view [default: the same lights in all views of a
     /// model, since training assumes light that stays]
     #[arg(long, requires = "dataset")]
@@ -339,6 +345,9 @@ fn check_files(arguments: &Batch, cameras: &str, plan: &Plan, rows: &Rows) -> Re
     }
     if arguments.split.is_some() && arguments.dataset != Some(Dataset::Nerf) {
         return Err(usage("--split is for --dataset nerf"));
+    }
+    if arguments.seed_points.is_some() && arguments.dataset != Some(Dataset::Nerf) {
+        return Err(usage("--seed-points is for --dataset nerf"));
     }
     if let Some(dataset) = arguments.dataset {
         let folder = Path::new(arguments.out.as_deref().unwrap_or_default());

@@ -6,6 +6,7 @@ use std::sync::Arc;
 use super::meter::Meter;
 use super::outcome::{Fault, Outcome};
 use super::report::Reporter;
+use super::seeds::SEED_POINTS;
 use super::studio::Studio;
 use super::tables::Tables;
 use super::tars::Tars;
@@ -38,6 +39,7 @@ impl<'a> Results<'a> {
         let plan = studio.plan();
         let (report, times) = (arguments.report.as_deref(), arguments.times.as_deref());
         let folder = Path::new(arguments.out.as_deref().unwrap_or_default());
+        let ply = arguments.seed_points.map(|_count| SEED_POINTS);
         let earlier = match arguments.dataset {
             Some(_) => Earlier::Dropped,
             None => Earlier::Kept,
@@ -45,7 +47,7 @@ impl<'a> Results<'a> {
         Ok(Self {
             meter: Meter::of(plan.len()),
             reporter: Reporter::begin(plan, report, times)?,
-            cameras: Cameras::new(name, earlier, arguments.split),
+            cameras: Cameras::new(name, earlier, (arguments.split, ply)),
             // A part of a list does not know all models: the tables are left to a last run.
             tables: arguments
                 .dataset

@@ -1,8 +1,9 @@
 //! Ambient light.
 
+use super::Which;
 use super::batch::{Reflected, Sample, set};
 use super::phong::{LightTerm, PhongMaterial, ViewLight};
-use super::shader::{LightShader, Which};
+use super::shader::LightShader;
 use crate::simd::Lanes;
 
 /// Light that is equal at every position and for every normal: Ia Ka.

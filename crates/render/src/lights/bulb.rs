@@ -1,8 +1,9 @@
 //! Point lights.
 
+use super::Which;
 use super::batch::{Reflected, Sample, set};
 use super::phong::{LightTerm, phong};
-use super::shader::{LightShader, Which};
+use super::shader::LightShader;
 use crate::simd::{Lanes, Real as _, Vec3};
 
 /// A point that shines equally in all directions and fades with distance.

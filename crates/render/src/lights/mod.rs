@@ -1,6 +1,6 @@
 //! The table of light kinds.
 //!
-//! Each kind of light is one file in this folder and one row: see [`row_of`]. Its shader
+//! Each kind of light is one file in this folder and a line in each item of this one. Its shader
 //! decides when a scene needs it, and computes the reflected light once, generically over
 //! [`Real`](super::simd::Real). One kernel adds all lights ([`sum`]). A frame pays only for the
 //! lights that it has.
@@ -25,7 +25,25 @@ pub(crate) use region::Region;
 pub(crate) use shader::LightRow;
 pub(crate) use sum::{add_light, set_lights};
 
+use self::batch::Reflected;
+use self::shader::LightShader;
+use crate::simd::Lanes;
 use marraztu_core::scene::LightKind;
+
+/// The shader of a kind of light.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Which {
+    /// Ambient light.
+    Ambient,
+    /// The sky.
+    Sky,
+    /// A sun.
+    Sun,
+    /// A bulb.
+    Bulb,
+    /// A spot.
+    Spot,
+}
 
 /// The row of ambient light.
 pub(crate) static AMBIENT: LightRow = LightRow::of::<ambient::Ambient>();
@@ -46,6 +64,23 @@ pub(crate) const fn row_of(kind: &LightKind) -> &'static LightRow {
         LightKind::Sun { .. } => &SUN,
         LightKind::Bulb { .. } => &BULB,
         LightKind::Spot { .. } => &SPOT,
+    }
+}
+
+/// Computes the light of one light. Its kind is matched for each vector of lanes, where the branch
+/// is well predicted.
+#[inline(always)]
+fn reflected<M: Lanes>(
+    lanes: M,
+    sample: Sample<M::R>,
+    term: &LightTerm<M::Number>,
+) -> Option<Reflected<M::R>> {
+    match term.which {
+        Which::Ambient => ambient::Ambient::shade(lanes, sample, term),
+        Which::Sky => sky::Sky::shade(lanes, sample, term),
+        Which::Sun => sun::Sun::shade(lanes, sample, term),
+        Which::Bulb => bulb::Bulb::shade(lanes, sample, term),
+        Which::Spot => spot::Spot::shade(lanes, sample, term),
     }
 }
 

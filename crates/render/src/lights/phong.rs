@@ -2,9 +2,9 @@
 //!
 //! Phong, "Illumination for Computer Generated Pictures", CACM 1975.
 
+use super::Which;
 use super::batch::{Reflected, Sample, set};
 use super::region::Region;
-use super::shader::Which;
 use crate::simd::power::least_cosine;
 use crate::simd::{Lanes, Number, Power, Real, Vec3};
 

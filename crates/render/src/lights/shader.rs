@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::Which;
 use super::batch::{Reflected, Sample};
 use super::phong::{LightTerm, PhongMaterial, ViewLight, max_attenuation};
 use super::region::Region;
@@ -55,21 +56,6 @@ pub(crate) trait LightShader {
         sample: Sample<M::R>,
         term: &LightTerm<M::Number>,
     ) -> Option<Reflected<M::R>>;
-}
-
-/// The shader of a row of the table of light kinds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Which {
-    /// Ambient light.
-    Ambient,
-    /// The sky.
-    Sky,
-    /// A sun.
-    Sun,
-    /// A bulb.
-    Bulb,
-    /// A spot.
-    Spot,
 }
 
 /// A row of the table of light kinds: the constants and functions of its [`LightShader`].

@@ -1,8 +1,9 @@
 //! Light of the sky: one colour from above the horizon and another from below it.
 
+use super::Which;
 use super::batch::{Reflected, Sample, set};
 use super::phong::{LightTerm, PhongMaterial, ViewLight};
-use super::shader::{LightShader, Which};
+use super::shader::LightShader;
 use crate::simd::Lanes;
 
 /// Light from the two halves of a sphere around everything. A surface whose normal leans from the

@@ -1,10 +1,11 @@
 //! Spot lights.
 
+use super::Which;
 use super::batch::{Reflected, Sample, set};
 use super::bulb::arriving;
 use super::phong::{LightTerm, ViewLight, max_attenuation, phong};
 use super::region::Region;
-use super::shader::{LightShader, Which};
+use super::shader::LightShader;
 use crate::simd::{Lanes, Real};
 
 /// A point that shines in a cone around an axis.

@@ -3,14 +3,9 @@
 
 use fearless_simd::Level;
 
-use super::ambient::Ambient;
-use super::batch::{Batch, Reflected, Sample, load, store};
-use super::bulb::Bulb;
+use super::batch::{Batch, Sample, load, store};
 use super::phong::LightTerm;
-use super::shader::{LightShader, Which};
-use super::sky::Sky;
-use super::spot::Spot;
-use super::sun::Sun;
+use super::reflected;
 use crate::simd::{Kernel, Lanes, Number, Vec3};
 
 /// Sets the light at every position of a batch to the sum of some lights: those with the indices
@@ -69,22 +64,5 @@ impl<T: Number> Kernel<T> for Sum<'_, T> {
             store(lanes, diffuse, &mut batch.diffuse, at);
             store(lanes, specular, &mut batch.specular, at);
         }
-    }
-}
-
-/// Computes the light of one light. Its kind is matched for each vector of lanes, where the branch
-/// is well predicted.
-#[inline(always)]
-fn reflected<M: Lanes>(
-    lanes: M,
-    sample: Sample<M::R>,
-    term: &LightTerm<M::Number>,
-) -> Option<Reflected<M::R>> {
-    match term.which {
-        Which::Ambient => Ambient::shade(lanes, sample, term),
-        Which::Sky => Sky::shade(lanes, sample, term),
-        Which::Sun => Sun::shade(lanes, sample, term),
-        Which::Bulb => Bulb::shade(lanes, sample, term),
-        Which::Spot => Spot::shade(lanes, sample, term),
     }
 }

@@ -2,10 +2,11 @@
 
 use glam::DVec3;
 
+use super::Which;
 use super::batch::{Reflected, Sample, set};
 use super::phong::{LightTerm, ViewLight, phong};
 use super::region::{EDGE_ON, Region};
-use super::shader::{LightShader, Which};
+use super::shader::LightShader;
 use crate::simd::Lanes;
 
 /// A light with the same direction at every position and no attenuation.

@@ -271,7 +271,7 @@ impl<T: ShadingNumber> Shader<T> {
         if let Some(map) = &shaded.extras.exponent {
             self.map_exponents(group, map);
         }
-        let look = self.look_of(group);
+        let look = matches!(origin, Origin::Pixels).then(|| self.look_of(group));
         let Self { tile, fragments, attributes, barycentrics, batch, maps, rays, .. } = self;
         // Lights are left out tile by tile; rays have no tile.
         let light = match origin {
@@ -284,10 +284,10 @@ impl<T: ShadingNumber> Shader<T> {
                 attributes.spread(level);
             }
             let points = Points { fragments, attributes, barycentrics };
-            match origin {
-                Origin::Pixels => surface_samples(level, look, points, batch),
+            match look {
+                Some(look) => surface_samples(level, look, points, batch),
                 // Positions and directions are those of the rays.
-                Origin::Hits(_) => place_normals(level, group.draw, points, batch),
+                None => place_normals(level, group.draw, points, batch),
             }
             // Bump maps tilt the interpolated normals before any light reads them.
             if let Some(bump) = &shaded.extras.bump {
@@ -338,17 +338,13 @@ impl<T: ShadingNumber> Shader<T> {
             let points = Points { fragments, attributes, barycentrics };
             mix(level, points, &attributes.values, to);
         };
-        match light {
+        if light == VertexLight::Bytes {
             // Interpolated and rounded in one pass.
-            VertexLight::Bytes => {
-                let thresholds = thresholds.of(group.context.mode().rounding, fragments);
-                return interpolate(attributes, Mixed::Colors(colors, thresholds));
-            }
-            VertexLight::Colors | VertexLight::Light => {
-                interpolate(attributes, Mixed::Rows(&mut batch.diffuse));
-                batch.len = fragments.len;
-            }
+            let thresholds = thresholds.of(group.context.mode().rounding, fragments);
+            return interpolate(attributes, Mixed::Colors(colors, thresholds));
         }
+        interpolate(attributes, Mixed::Rows(&mut batch.diffuse));
+        batch.len = fragments.len;
         if light.is_colored() {
             // Colours include the highlights.
             batch.specular = no_light();

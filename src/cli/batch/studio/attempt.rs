@@ -17,6 +17,7 @@ use crate::cli::batch::jobs::Job;
 use crate::cli::batch::options::PictureOptions;
 use crate::cli::batch::outcome::{Drawn, Fault, FileSum, Spent};
 use crate::cli::batch::report::shown;
+use crate::cli::batch::seeds::{self, SEED_POINTS};
 use crate::cli::batch::tars::{Content, EarlierTars, Member, member_size};
 use crate::cli::cameras::CameraFrame;
 use crate::cli::failure::Failure;
@@ -52,6 +53,7 @@ impl Attempt<'_> {
         {
             // Whole files are read, and models with findings loaded, only for a report.
             folders.clone().try_for_each(|folder| studio.prepare_folder(folder))?;
+            self.seed_points(true)?;
             let drawn = self.unchanged(has_findings(&stamp))?;
             // Tables describe all pictures, also those of an earlier run.
             let image = match studio.arguments.dataset {
@@ -79,6 +81,7 @@ impl Attempt<'_> {
             io::save_encoded(&file.path, content).map_err(|error| output(&error))?;
         }
         self.spent.encode += begin.elapsed();
+        self.seed_points(false)?;
         let files = job.files.iter().zip(&contents);
         let files = files.map(|(file, content)| file_sum(file, content, studio.reports()));
         let (files, camera) = (files.collect(), self.camera(&stage));
@@ -136,6 +139,26 @@ impl Attempt<'_> {
             dataset::remove_masks(job, image.objects.len());
         }
         Ok(Some(Box::new(image)))
+    }
+
+    /// Writes the seed points of a data set with the first view of a model, or only if they are
+    /// `missing`.
+    fn seed_points(&mut self, missing: bool) -> Result<(), Fault> {
+        let (studio, job) = (self.studio, self.job);
+        let Some(count) = studio.arguments.seed_points.filter(|_| job.view() == 0) else {
+            return Ok(());
+        };
+        let path = job.cameras_folder(studio.arguments.dataset).join(SEED_POINTS);
+        if missing && path.exists() {
+            return Ok(());
+        }
+        if seeds::is_of_another(&path) {
+            let shown = path.display();
+            return Err(Fault::Output(format!("{shown} is of another program: remove it first")));
+        }
+        let (stage, _) = self.stage()?;
+        let points = seeds::ply(&stage.scene, stage.view.time, count);
+        io::save_encoded(&path, &points).map_err(|error| output(&error))
     }
 
     /// Describes the camera, if the picture has layers.
