@@ -229,7 +229,7 @@ def test_settings_for_a_budget_keep_to_it_and_serve_other_pictures(cam):
     assert np.array_equal(fit.shot.render().rgba, again.rgba)
     assert not scene.shot(96, 64).fitted(within=1e-9).is_reached
     for wrong in ({}, {"within": 5, "error": 1}, {"error": 0}, {"within": float("nan")}):
-        with pytest.raises(ValueError, match="one of within|a number above 0"):
+        with pytest.raises(ValueError, match=r"one of within|a number above 0"):
             scene.shot(96, 64).fitted(**wrong)
 
 
