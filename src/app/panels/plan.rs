@@ -249,14 +249,12 @@ fn group_ui(
         on: group.on() > 0,
         things: &things,
         why: &why,
+        more: paths.as_ref().map(coloured_by),
         pixels: group.pixels(),
         most,
         is_measured: times.is_some(),
     };
-    let (rect, mut response) = row.ui(ui);
-    if let Some(paths) = paths {
-        response = response.on_hover_text_at_pointer(coloured_by(&paths));
-    }
+    let (rect, response) = row.ui(ui);
     if let Some(Ok(command)) = switched(&state.scene, group.effect)
         && row.switch_ui(ui, rect, group.effect)
     {
@@ -285,7 +283,7 @@ fn coloured_by(paths: &PathPixels) -> String {
     let used = paths.rows().into_iter().filter(|(.., pixels)| *pixels > 0);
     let lines = used.map(|(name, reason, pixels)| {
         let pixels = grouped(usize::try_from(pixels).unwrap_or(usize::MAX));
-        format!("{name}: {pixels} pixels ({reason})")
+        format!("{name}: {pixels} pixels, {reason}")
     });
     lines.collect::<Vec<_>>().join("\n")
 }
@@ -315,6 +313,7 @@ fn use_ui(ui: &mut Ui, (most, is_measured): (u64, bool), one: &EffectUse) {
         on: one.state.is_on(),
         things: one.on.as_ref().map_or("the frame", |thing| &thing.name),
         why: &one.state.to_string(),
+        more: None,
         pixels: one.pixels,
         most,
         is_measured,
@@ -334,6 +333,8 @@ struct Row<'a> {
     on: bool,
     things: &'a str,
     why: &'a str,
+    /// What its hint says more than the cell.
+    more: Option<String>,
     pixels: Option<u64>,
     /// The largest number of pixels in the table.
     most: u64,
@@ -384,6 +385,10 @@ impl Row<'_> {
         }
         controls::focus_ring(ui, rect, &response);
         let tip = if self.why.is_empty() { self.things } else { self.why };
+        let tip = match &self.more {
+            Some(more) => format!("{tip}\n{more}"),
+            None => tip.to_owned(),
+        };
         (rect, response.on_hover_text_at_pointer(tip))
     }
 

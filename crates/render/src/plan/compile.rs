@@ -127,7 +127,7 @@ impl<'a> Compiler<'a> {
                 "texels in linear values"
             }
             LightOp::Vertices(VertexLight::Bytes) | LightOp::Points | LightOp::None => {
-                return (WholePath::One, "block by block");
+                return (WholePath::One, "blocks of one triangle at once");
             }
         };
         (WholePath::Slots, why)

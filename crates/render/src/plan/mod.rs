@@ -23,6 +23,8 @@ mod turning;
 pub(crate) mod uses;
 mod view_lights;
 
+use std::collections::BTreeMap;
+
 use self::compile::Compiler;
 use self::observer::ObserverSpace;
 use self::planning::{Planner, Planning};
@@ -59,9 +61,9 @@ pub fn explain_frame(shot: &Shot) -> (FramePlan, Vec<EffectUse>) {
     let Planning { plan, notes, .. } = planned(Rules::Applied, Notes::wanted, shot);
     let mut uses = notes.into_uses();
     let compiler = Compiler::new(&plan);
+    let draws: BTreeMap<_, _> = plan.draws.iter().map(|draw| (draw.item, draw)).collect();
     for one in uses.iter_mut().filter(|one| one.effect == Effect::Surfaces && one.state.is_on()) {
-        let item = one.on.as_ref().map(|thing| thing.item);
-        let Some(draw) = plan.draws.iter().find(|draw| Some(draw.item) == item) else { continue };
+        let Some(draw) = one.on.as_ref().and_then(|thing| draws.get(&thing.item)) else { continue };
         // Parts may have different paths; the first part speaks for all.
         if let Some(pipeline) = draw.part_pipelines.iter().flatten().next() {
             one.state = EffectState::On(compiler.in_words(draw, *pipeline).into());

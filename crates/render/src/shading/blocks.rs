@@ -93,7 +93,7 @@ impl Shader<f32> {
         let Self { attributes, batch, placed, .. } = self;
         let light = BlockLight {
             cut: cut.as_ref(),
-            mode: group.context.mode(),
+            interpolation: group.context.mode().interpolation,
             thresholds: terms.thresholds(),
             look: None,
             tint: [1.0; 3],
@@ -158,7 +158,7 @@ impl Shader<f32> {
         }
         let block_light = BlockLight {
             cut: cut.as_ref(),
-            mode: context.mode(),
+            interpolation: context.mode().interpolation,
             thresholds: terms.thresholds(),
             look: needs_positions.then_some(look),
             tint: shaded.tint.map(f32::from_f64),

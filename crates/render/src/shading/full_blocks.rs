@@ -13,7 +13,6 @@ use super::interpolate::{CornerValues, Look, depth_between};
 use super::quantize::reflected;
 use super::texels::{OfFirst, PlacedTexture, TexelScratch};
 use super::triangle_attributes::TriangleAttributes;
-use crate::frame::shading_mode::ShadingMode;
 use crate::lights::{Batch, LightTerm, load, set, store};
 use crate::plan::tile::TileLight;
 use crate::screen::clipped_weights::ClippedWeights;
@@ -284,7 +283,7 @@ fn two_rows<S: Simd>(simd: S, of: &ClippedWeights, [x, y]: [i32; 2]) -> Weighted
 pub(crate) struct BlockLight<'a> {
     /// The weights of the triangle, if it is clipped.
     pub(crate) cut: Option<&'a ClippedWeights>,
-    pub(crate) mode: &'a ShadingMode,
+    pub(crate) interpolation: Interpolation,
     /// The rounding thresholds of a block's pixels.
     pub(crate) thresholds: &'a [f32; BLOCK_PIXELS],
     /// The conversion from pixels to positions and normals; `None` if no light reads them.
@@ -345,8 +344,8 @@ fn colored<S: Simd>(
 ) {
     let lanes = Sixteen(simd);
     let BlockLight { thresholds, look, tint, texture, vertex_colors, lights, terms, .. } = light;
-    let BlockLight { glow, encoding, mode, .. } = light;
-    let by = (mode.interpolation, of_first(lanes, &attributes.by_w));
+    let BlockLight { glow, encoding, interpolation, .. } = light;
+    let by = (interpolation, of_first(lanes, &attributes.by_w));
     let z = of_first(lanes, &attributes.z);
     let corners = corners(lanes, &attributes.values);
     let tint = set(lanes, tint);
