@@ -106,6 +106,11 @@ pub enum Compare {
     Error(u16),
 }
 
+impl Compare {
+    /// The split to begin with: most of the window shows the picture.
+    pub const SPLIT: Self = Self::Split(1.0 / 3.0);
+}
+
 /// The measured error of a picture against the exact one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Judged {

@@ -211,10 +211,10 @@ fn budget_ui(
 fn compare_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let now = state.lab.compare;
     // Every split is the same choice, wherever its slider is.
-    let chosen = if matches!(now, Compare::Split(_)) { Compare::Split(0.5) } else { now };
+    let chosen = if matches!(now, Compare::Split(_)) { Compare::SPLIT } else { now };
     let all = [
         ("Off", Compare::Off, "Shows only the picture"),
-        ("Split", Compare::Split(0.5), "Shows the ideal to the left of a slider"),
+        ("Split", Compare::SPLIT, "Shows the ideal to the left of a slider"),
         ("x1", Compare::Error(1), "Shows the error"),
         ("x16", Compare::Error(16), "Shows 16 times the error"),
         ("x256", Compare::Error(256), "Shows 256 times the error"),
