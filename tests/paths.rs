@@ -138,7 +138,7 @@ fn the_plan_names_the_path_of_each_object() {
         surfaces.unwrap().state.why().to_owned()
     };
     let pixel = words(Settings::default());
-    assert_eq!(pixel, "blocks of one triangle at once");
+    assert_eq!(pixel, "by block");
     let f64 = words(Settings { arithmetic: Arithmetic::F64, ..Settings::default() });
-    assert_eq!(f64, "pixel by pixel: 64-bit numbers");
+    assert_eq!(f64, "by pixel: 64-bit numbers");
 }

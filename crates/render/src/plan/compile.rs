@@ -127,7 +127,7 @@ impl<'a> Compiler<'a> {
                 "texels in linear values"
             }
             LightOp::Vertices(VertexLight::Bytes) | LightOp::Points | LightOp::None => {
-                return (WholePath::One, "blocks of one triangle at once");
+                return (WholePath::One, "by block");
             }
         };
         (WholePath::Slots, why)
@@ -139,7 +139,7 @@ impl<'a> Compiler<'a> {
         let (path, why) = self.whole(draw, &self.plan.pipelines[pipeline as usize]);
         match path {
             WholePath::Fill | WholePath::One => why.to_owned(),
-            WholePath::Slots => format!("pixel by pixel: {why}"),
+            WholePath::Slots => format!("by pixel: {why}"),
         }
     }
 
