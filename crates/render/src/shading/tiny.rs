@@ -108,7 +108,7 @@ impl Shader<f32> {
         dispatch!(level, simd => weigh(simd, by, of, (fragments, tiny), barycentrics))
     }
 
-    /// Phong shading, like [`Shader::light_pixels`].
+    /// Phong shading, like [`Shader::light_points`].
     fn light_tiny(&mut self, group: &Group<'_, f32>, shaded: &Shaded) -> bool {
         let ShadingContext { level, plan, frame, terms, .. } = *group.context;
         self.batch.len = self.fragments.len;
