@@ -10,6 +10,7 @@ mod common;
 use common::{at, ball, edit, scene, square};
 use marraztu_core::accuracy::{Arithmetic, LightAt, LightValues, Rounding, Settings, Shot};
 use marraztu_core::base::Shared;
+use marraztu_core::base::color::Color;
 use marraztu_core::base::image::Size;
 use marraztu_core::scene::{Command, Item, LightId, Model, ObjectId, Scene, Sides, View};
 use marraztu_render::{PathPixels, Renderer, explain_frame, plan_frame};
@@ -125,6 +126,22 @@ fn whatever_fast_paths_cannot_do_is_left_to_slots() {
     let linear = Settings { light_values: LightValues::Linear, ..with_light(LightAt::Vertex) };
     for own in [large(), fine(), finest()] {
         expect("linear Gouraud shading", own, linear, (&[SLOTS], &[]));
+    }
+}
+
+/// With one sample per pixel, and no colours of faces that are looked up in blocks with background.
+#[test]
+fn the_pixels_of_all_paths_are_those_that_show_a_surface() {
+    for (mut scene, view) in [large(), fine(), finest()] {
+        scene.background = Color([255, 0, 255]);
+        let view = View { marks: false, ..view };
+        let plan = plan_frame(&Shot::new(&scene, &view, &Settings::default(), Size::new(400, 400)));
+        let mut renderer = Renderer::default();
+        let pixels = renderer.render(&plan).pixels().to_vec();
+        let shown = pixels.iter().filter(|pixel| **pixel != [255, 0, 255, 255]).count();
+        let paths = renderer.path_pixels().unwrap();
+        let sum: u64 = paths.rows().iter().map(|(.., pixels)| pixels).sum();
+        assert_eq!(sum, shown as u64, "{paths:?}");
     }
 }
 

@@ -369,10 +369,10 @@ impl Renderer {
     }
 
     /// Returns the number of pixels that each path has coloured in the last picture, in each pass
-    /// over several samples. `None` if only a part was drawn again.
+    /// over several samples. `None` if only a part was drawn again, or it was cancelled.
     #[must_use]
     pub fn path_pixels(&self) -> Option<PathPixels> {
-        self.drew_all.then_some(self.path_pixels)
+        (self.finished && self.drew_all).then_some(self.path_pixels)
     }
 
     /// Returns the number of triangles in the last picture.

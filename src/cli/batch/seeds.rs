@@ -10,12 +10,12 @@ use std::io::Read as _;
 use std::path::Path;
 
 use glam::{DMat4, DVec3};
-use marraztu_core::scene::{Object, Scene, Texture, Wrap};
+use marraztu_core::scene::{Object, Scene, Surface, Texture, Wrap};
 
 /// The name of the file.
 pub(super) const SEED_POINTS: &str = "points3d.ply";
 
-/// Tells the file from those of other programs.
+/// The line that distinguishes the file from those of other programs.
 const COMMENT: &str = "comment seed points of marraztu batch";
 
 const HEAD: &str = "property float x\nproperty float y\nproperty float z\nproperty float nx\n\
@@ -23,8 +23,8 @@ const HEAD: &str = "property float x\nproperty float y\nproperty float z\nproper
     property uchar blue\nend_header\n";
 
 /// Encodes points on the shown surfaces of a scene as binary PLY, in world space, with the normals
-/// of their faces and the colours of the surface: Kd times texel and vertex colour. Surfaces get
-/// points in proportion to their area, the same ones in every run.
+/// of their faces and the colours of the surface: Kd times texel, tint and vertex colour. Surfaces
+/// get points in proportion to their area, the same ones in every run.
 pub(super) fn ply(scene: &Scene, time: f64, count: u32) -> Vec<u8> {
     let surfaces: Vec<SeedSurface<'_>> = scene
         .objects
@@ -112,16 +112,23 @@ impl SeedSurface<'_> {
         let mixed = |values: [[f32; 3]; 3]| -> [f64; 3] {
             std::array::from_fn(|i| (0..3).map(|k| f64::from(values[k][i]) * weights[k]).sum())
         };
-        let mut color = look.material.diffuse;
+        // The texture may replace the material, or the material the texture.
+        let Object { surface, tint, .. } = self.object;
+        let mut color = match surface {
+            Surface::Texture => [1.0; 3],
+            Surface::Material | Surface::TextureAndLight => look.material.diffuse,
+        };
+        let is_tinted = *surface != Surface::Material;
+        let tint = if is_tinted { tint.factors() } else { [1.0; 3] };
         let uvs = mesh.triangle_uvs(triangle).map(|uvs| mixed(uvs.map(|[u, v]| [u, v, 0.0])));
         let texel = uvs.and_then(|[u, v, _]| texel(look.texture?, [u, v]));
         let shows_colors = look.shows_colors_with(look.texture.filter(|_| uvs.is_some()));
-        let own = match shows_colors && !mesh.colors().is_empty() {
+        let own = match is_tinted && shows_colors && !mesh.colors().is_empty() {
             true => mixed(mesh.triangle_colors(triangle)),
             false => [1.0; 3],
         };
         for i in 0..3 {
-            color[i] *= own[i] * texel.map_or(1.0, |texel| texel[i]);
+            color[i] *= tint[i] * own[i] * texel.map_or(1.0, |texel| texel[i]);
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 255")]
         let color = color.map(|part| (part.clamp(0.0, 1.0) * 255.0).round() as u8);

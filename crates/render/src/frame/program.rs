@@ -62,7 +62,7 @@ pub(crate) enum LightOp {
     Faces,
 }
 
-/// What is interpolated between vertices.
+/// The values at vertices, which are interpolated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum VertexLight {
     /// Colours, which are rounded to bytes at once.
@@ -108,7 +108,7 @@ pub struct PathPixels {
 }
 
 impl PathPixels {
-    /// Returns the paths: the name, what it is for, and the number of pixels.
+    /// Returns the name of each path, its use, and its number of pixels.
     #[must_use]
     pub const fn rows(&self) -> [(&'static str, &'static str, u64); 5] {
         let Self { fill, faces, one, slots, each } = *self;

@@ -1,8 +1,7 @@
 //! The variant of each stage, selected by the settings.
 //!
-//! The default of each stage is compiled separately. Every other choice of an axis is a variant of
-//! the stage and is selected once per batch, draw or tile. An unused variant costs a comparison
-//! there, and nothing at a pixel.
+//! Every choice of an axis other than the default is a variant of the stage. It is selected once
+//! per draw, tile or list, or once for sixteen pixels: the same way for all of them.
 
 use std::ops::Deref;
 

@@ -9,8 +9,9 @@
 //! transparent triangles in front of it.
 //!
 //! Alternatives selected by the settings are variants of the same kernels: each `rule` of coverage
-//! and each `depth_format` is a type that kernels are compiled for. `vertex_variants` transforms
-//! vertices by other arithmetics; `edges_in_floats` and `scan_lines` cover blocks by other rules.
+//! is a type that kernels are compiled for, and the `depth_format` is selected as they run.
+//! `vertex_variants` transforms vertices by other arithmetics; `edges_in_floats` and `scan_lines`
+//! cover blocks by other rules.
 
 pub(crate) mod alpha_test;
 mod beyond;
