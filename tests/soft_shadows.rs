@@ -292,7 +292,7 @@ fn the_plan_tells_soft_shadows_from_hard_ones() {
 
 /// Sets the only light of a scene to a sky.
 fn sky(scene: &mut Scene, above: u8, below: u8, shadows: bool) {
-    let kind = LightKind::Sky { ground: Color([below; 3]) };
+    let kind = LightKind::Sky { ground: Color([below; 3]), panorama: None };
     let color = Color([above; 3]);
     let light = Light { shadows, color, ..Light::new("sky", 0, kind) };
     scene.lights = List::from_iter([(LightId(500), light)]);

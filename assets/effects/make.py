@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Writes panels.obj with its materials and maps: six panels, each a little bent, each with one map.
+"""Writes panels.obj with its materials and maps: six panels, each a little bent, each with one map;
+and evening.hdr, a panorama of fields under a low sun.
 
 Run it in any folder: it writes beside itself.
 """
 
-from math import cos, pi, sin, sqrt
+from math import cos, frexp, ldexp, pi, sin, sqrt
 from pathlib import Path
 import struct
 import zlib
@@ -26,6 +27,75 @@ def png(name, texel):
     header = struct.pack(">IIBBBBB", SIDE, SIDE, 8, 2, 0, 0, 0)
     data = chunk(b"IHDR", header) + chunk(b"IDAT", zlib.compress(b"".join(rows), 9)) + chunk(b"IEND", b"")
     (HERE / name).write_bytes(b"\x89PNG\r\n\x1a\n" + data)
+
+
+def hdr(name, width, height, light):
+    """A Radiance picture; `light` gives red, green, blue by column and row from above."""
+
+    def texel(color):
+        most = max(color)
+        _, exponent = frexp(most)
+        scale = ldexp(256, -exponent)
+        return [*(min(int(channel * scale), 255) for channel in color), exponent + 128]
+
+    def packed(numbers):
+        """Run-length encoding: runs of 3 or more equal numbers, and stretches of others."""
+        out, others, i = b"", b"", 0
+        while i < len(numbers):
+            run = 1
+            while i + run < len(numbers) and run < 127 and numbers[i + run] == numbers[i]:
+                run += 1
+            if run >= 3 or len(others) == 128:
+                out += (bytes([len(others)]) + others if others else b"")
+                others = b""
+            if run >= 3:
+                out += bytes([128 + run, numbers[i]])
+                i += run
+            else:
+                others += bytes([numbers[i]])
+                i += 1
+        return out + (bytes([len(others)]) + others if others else b"")
+
+    content = f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n".encode()
+    for y in range(height):
+        texels = [texel(light(x, y)) for x in range(width)]
+        content += bytes([2, 2, width >> 8, width & 255])
+        for channel in range(4):
+            content += packed([texel[channel] for texel in texels])
+    (HERE / name).write_bytes(content)
+
+
+def evening(x, y, width=512, height=256):
+    """Light of a clear evening, by column and row of a panorama."""
+    turn, fall = 2 * pi * ((x + 0.5) / width - 0.5), pi * (y + 0.5) / height
+    direction = sin(fall) * sin(turn), cos(fall), -sin(fall) * cos(turn)
+    low = pi / 2 - 0.24
+    sun = sin(low) * sin(0.9), cos(low), -sin(low) * cos(0.9)
+    near = sum(a * b for a, b in zip(direction, sun))
+    hills = 0.035 + 0.03 * sin(3 * turn + 1) + 0.018 * sin(8 * turn) + 0.008 * sin(21 * turn + 2)
+    up = direction[1]
+    land = min(max((hills - up) * height / pi + 0.5, 0.0), 1.0)
+    if land > 0:
+        # Fields: furrows that meet at the horizon, lighter near it.
+        furrow = 0.5 + 0.5 * sin(2.2 / (0.06 - min(up, 0.0)) + 5 * sin(turn))
+        shade = 0.55 + 0.25 * furrow + 0.3 * max(near, 0.0) ** 4
+        fields = [channel * shade for channel in (0.20, 0.19, 0.08)]
+        if land == 1:
+            return [round(channel, 3) for channel in fields]
+    height_part = min(max(up, 0.0), 1.0) ** 0.55
+    color = [a + (b - a) * height_part for a, b in zip((0.95, 0.62, 0.40), (0.10, 0.22, 0.55))]
+    glow = max(near, 0.0)
+    color = [c + g * (0.9 * glow**24 + 0.35 * glow**6) for c, g in zip(color, (1.0, 0.62, 0.28))]
+    cloud = sin(9 * up + 2 * sin(turn * 2)) * sin(3 * turn + 6 * up) + 0.5 * sin(7 * turn - 11 * up)
+    veil = max(0.0, cloud - 0.4) * (1 - height_part) * 0.7
+    color = [c + veil * v for c, v in zip(color, (0.9, 0.55, 0.45))]
+    if near > 0.9993:
+        color = [620.0, 480.0, 300.0]
+    elif near > 0.998:
+        color = [c + 12 * v for c, v in zip(color, (1.0, 0.8, 0.5))]
+    if land > 0:
+        color = [c + land * (f - c) for c, f in zip(color, fields)]
+    return [round(channel, 3) for channel in color]
 
 
 def stud(x, y):
@@ -104,3 +174,4 @@ if __name__ == "__main__":
     png("ring.png", ring)
     png("studs.png", lambda x, y: grey(stud(x, y)))
     png("normals.png", normal)
+    hdr("evening.hdr", 512, 256, evening)

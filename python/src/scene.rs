@@ -226,12 +226,14 @@ impl State {
     /// Replaces all lights.
     fn set_lights(&mut self, lights: Vec<LightValue>) -> Result<(), Failure> {
         let mut changed = self.clone();
+        let panoramas = self.scene.lights.iter().filter_map(|(_, light)| light.kind.panorama());
+        let known: Vec<_> = panoramas.map(|sky| sky.panorama.clone()).collect();
         for id in self.scene.lights.ids() {
             changed.change(Command::Remove(ItemId::Light(id)))?;
         }
         let mut next = changed.scene.next_id;
         for (slot, light) in (0..).zip(lights) {
-            let item = Item::Light(LightId(next), Box::new(light.light(slot)?));
+            let item = Item::Light(LightId(next), Box::new(light.light(slot, &known)?));
             next += 1;
             changed.change(Command::NextId(next))?;
             changed.change(Command::Insert { at: usize::MAX, item })?;

@@ -1,15 +1,18 @@
 //! Materials, lights and matrices as plain values of Python.
 
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 use glam::{DMat4, DVec3, DVec4};
 use marraztu_core::accuracy::{ACCURACY_PRESETS, AXES, AccuracyPreset, Axis, Settings};
 use marraztu_core::base::color::Color;
-use marraztu_core::base::math;
+use marraztu_core::base::{Shared, math};
 use marraztu_core::scene::{
     Aim, Attenuation, Light, LightKind, LightOrigin, Material, MaterialChoice, Optics, Orbit,
-    PRESETS, PresetId, Reflection, Scene, SpotOwner, Tracked, Transmission, View,
+    PRESETS, Panorama, PresetId, Reflection, Scene, SkyPanorama, SpotOwner, Tracked, Transmission,
+    View,
 };
+use marraztu_io::load_panorama;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
@@ -143,6 +146,9 @@ pub(crate) struct LightValue {
     shadows: bool,
     size: f64,
     ground: [u8; 3],
+    panorama: Option<PathBuf>,
+    turn: f64,
+    shown: bool,
     position: Option<[f64; 3]>,
     direction: Option<[f64; 3]>,
     angle: f64,
@@ -151,8 +157,8 @@ pub(crate) struct LightValue {
 }
 
 impl LightValue {
-    /// Returns the light for a slot of the scene.
-    pub(crate) fn light(self, slot: u32) -> Result<Light, Failure> {
+    /// Returns the light for a slot of the scene. A panorama that is not among `known` is loaded.
+    pub(crate) fn light(self, slot: u32, known: &[Shared<Panorama>]) -> Result<Light, Failure> {
         let invalid = |what: &str| Failure::Value(format!("{} light: {what}", self.kind));
         let direction = match self.direction.map(|v| math::unit(DVec3::from_array(v))) {
             Some(None) => return Err(invalid("direction is a finite vector other than 0")),
@@ -161,7 +167,9 @@ impl LightValue {
         let position = self.position.map(DVec3::from_array);
         let kind = match (&*self.kind, position, direction) {
             ("ambient", None, None) => LightKind::Ambient,
-            ("sky", None, None) => LightKind::Sky { ground: Color(self.ground) },
+            ("sky", None, None) => {
+                LightKind::Sky { ground: Color(self.ground), panorama: self.panorama(known)? }
+            }
             ("sun", None, Some(direction)) => LightKind::Sun { direction: Tracked::new(direction) },
             ("bulb", Some(position), None) => {
                 LightKind::Bulb { position: Tracked::new(position), orbit: Orbit::default() }
@@ -200,6 +208,18 @@ impl LightValue {
         Ok(Light { color, attenuation, shadows, size, ..light })
     }
 
+    /// Returns the panorama of a sky.
+    fn panorama(&self, known: &[Shared<Panorama>]) -> Result<Option<SkyPanorama>, Failure> {
+        let Some(path) = &self.panorama else { return Ok(None) };
+        let source = std::path::absolute(path).unwrap_or_else(|_empty| path.clone());
+        let panorama = match known.iter().find(|panorama| panorama.source == source) {
+            Some(panorama) => panorama.clone(),
+            None => load_panorama(&source).map_err(Failure::from)?.into(),
+        };
+        let turn = self.turn.to_degrees();
+        Ok(Some(SkyPanorama { panorama, turn, is_shown: self.shown }))
+    }
+
     /// Describes a light of a scene. Spots of objects are fixed at their current place.
     pub(crate) fn of(scene: &Scene, view: &View, light: &Light) -> Self {
         let follows_camera = light.kind.owner() == Some(&SpotOwner::SelectedCamera);
@@ -216,6 +236,7 @@ impl LightValue {
             | LightKind::Sun { .. }
             | LightKind::Bulb { .. } => (0.0, 0.0),
         };
+        let panorama = light.kind.panorama();
         Self {
             kind: light.kind.info().name.to_owned(),
             name: light.name.clone(),
@@ -226,9 +247,12 @@ impl LightValue {
                 _ => light.size,
             },
             ground: match light.kind {
-                LightKind::Sky { ground: Color(ground) } => ground,
+                LightKind::Sky { ground: Color(ground), .. } => ground,
                 _ => [0; 3],
             },
+            panorama: panorama.map(|sky| sky.panorama.source.clone()),
+            turn: panorama.map_or(0.0, |sky| sky.turn.to_radians()),
+            shown: panorama.is_none_or(|sky| sky.is_shown),
             position: position.map(|v| v.to_array()),
             direction: direction.map(|v| v.to_array()),
             angle,

@@ -192,6 +192,10 @@ pub(crate) struct Seeing {
         ("studio", Look::Studio),
     ]))]
     pub(crate) look: Option<Look>,
+    /// A panorama (HDR, EXR or other picture) that lights everything and is seen behind it, in place
+    /// of all lights; with --background, it only lights
+    #[arg(long, value_name = "FILE")]
+    pub(crate) sky: Option<PathBuf>,
     /// The slots of the lights to switch on, as "0,2"; the others are off. "none" switches all off
     #[arg(long, value_name = "SLOTS", value_parser = slots)]
     pub(crate) lights: Option<Slots>,

@@ -351,6 +351,11 @@ pub(super) fn look(stage: &mut Stage, seeing: &Seeing, aim: &Aim) -> Result<(), 
     {
         stage.change(command)?;
     }
+    if let Some(file) = &seeing.sky {
+        let panorama = io::load_panorama(file)?;
+        let command = lighting::panorama(&stage.scene, &stage.view, panorama.into());
+        stage.change(command.map_err(|refusal| usage(&refusal.to_string()))?)?;
+    }
     if let Some(Slots(slots)) = &seeing.lights {
         check_slots(stage, slots, |_| true, "")?;
         switch(stage, |light| slots.contains(&light.slot), |light| &mut light.on)?;
@@ -367,6 +372,7 @@ pub(super) fn look(stage: &mut Stage, seeing: &Seeing, aim: &Aim) -> Result<(), 
     }
     if let Some(background) = seeing.background {
         stage.change(Command::Background(background))?;
+        stage.scene.hide_panoramas();
     }
     let view = &mut stage.view;
     view.projection = seeing.projection.unwrap_or(view.projection);

@@ -39,6 +39,7 @@ mod mtl;
 mod numbers;
 mod obj;
 mod packed;
+mod panorama;
 mod part;
 mod picture;
 mod progress;
@@ -79,6 +80,7 @@ pub use lessons::{Lesson, lesson_on, lesson_scene, lessons};
 pub use load::{load, parse};
 pub use loaded::Loaded;
 pub use numbers::{Numbers, PictureContent, load_content};
+pub use panorama::{load_panorama, panorama_endings};
 pub use part::sweep_once;
 pub use picture::{
     NextBand, PICTURE_FORMATS, PictureFormat, check_alpha, check_layer_target,

@@ -19,12 +19,15 @@ pub struct Sources {
 }
 
 impl Sources {
-    /// Collects the files of all objects, and of the models that show cameras.
+    /// Collects the files of all objects, panoramas, and of the models that show cameras.
     pub fn of(scene: &Scene) -> Self {
         let mut sources = Self::default();
         for (_, object) in scene.objects.iter() {
             sources.add_all(files(&object.model));
             sources.add_all(object.texture.iter().map(|texture| &texture.source));
+        }
+        for (_, light) in scene.lights.iter() {
+            sources.add_all(light.kind.panorama().map(|sky| &sky.panorama.source));
         }
         for (_, camera) in scene.cameras.iter() {
             sources.add_all(files(&camera.model));

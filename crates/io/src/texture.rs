@@ -8,6 +8,7 @@ use image::{ColorType, DynamicImage, ImageDecoder, ImageFormat, ImageReader};
 
 use super::error::{LoadError, shown};
 use super::findings::{Finding, FindingKind, Findings};
+use super::panorama::FLOAT_FORMATS;
 use super::picture::either;
 use super::progress::Progress;
 use super::read::read;
@@ -141,7 +142,8 @@ fn too_many_texels(path: &Path) -> LoadError {
 /// Decodes a file; returns the picture and whether the file is truncated.
 fn decode(path: &Path, most: usize) -> Result<(Picture, bool), LoadError> {
     let fail = |reason: &str| LoadError::file(&shown(path), reason);
-    let (decoded, cut_off) = decode_any(path, most)?;
+    let bytes = read(path, MOST_BYTES, &Progress::new())?;
+    let (decoded, cut_off) = decode_bytes(path, &bytes, most, &[])?;
     let picture = picture(decoded).ok_or_else(|| fail("the picture is damaged"))?;
     if picture.size().area() == 0 {
         return Err(fail("the picture is empty"));
@@ -151,7 +153,7 @@ fn decode(path: &Path, most: usize) -> Result<(Picture, bool), LoadError> {
 
 /// Decodes the content of a file; `None` if it is damaged, truncated or not a picture.
 pub(super) fn decoded(path: &Path, content: &[u8]) -> Option<Picture> {
-    let (decoded, cut_off) = decode_bytes(path, content, usize::MAX).ok()?;
+    let (decoded, cut_off) = decode_bytes(path, content, usize::MAX, &[]).ok()?;
     picture(decoded).filter(|_| !cut_off)
 }
 
@@ -161,7 +163,7 @@ pub(super) fn decode_deep(
     path: &Path,
     content: &[u8],
 ) -> Result<(Picture, Option<Deep>), LoadError> {
-    let (decoded, _) = decode_bytes(path, content, usize::MAX)?;
+    let (decoded, _) = decode_bytes(path, content, usize::MAX, &[])?;
     let is_deep = matches!(
         decoded.color(),
         ColorType::L16 | ColorType::La16 | ColorType::Rgb16 | ColorType::Rgba16
@@ -175,12 +177,14 @@ pub(super) fn decode_deep(
 /// Pixels of 16 bits: red, green, blue and opacity.
 type Deep = Vec<[u16; 4]>;
 
-/// Works like [`decode`], for any number of bits.
-fn decode_any(path: &Path, most: usize) -> Result<(DynamicImage, bool), LoadError> {
-    decode_bytes(path, &read(path, MOST_BYTES, &Progress::new())?, most)
-}
-
-fn decode_bytes(path: &Path, bytes: &[u8], most: usize) -> Result<(DynamicImage, bool), LoadError> {
+/// Works like [`decode`], for the content of a file with any number of bits per channel, and for
+/// pictures in floats of these formats.
+pub(super) fn decode_bytes(
+    path: &Path,
+    bytes: &[u8],
+    most: usize,
+    floats: &[ImageFormat],
+) -> Result<(DynamicImage, bool), LoadError> {
     let file = shown(path);
     let fail = |reason: String| LoadError::file(&file, reason);
     let mut reader = ImageReader::new(Cursor::new(bytes));
@@ -190,7 +194,9 @@ fn decode_bytes(path: &Path, bytes: &[u8], most: usize) -> Result<(DynamicImage,
     }
     let mut reader =
         reader.with_guessed_format().map_err(|error| LoadError::system(&file, &error))?;
-    if reader.format().is_none() {
+    let is_known =
+        |format: ImageFormat| floats.contains(&format) || !FLOAT_FORMATS.contains(&format);
+    if !reader.format().is_some_and(is_known) {
         return Err(fail(unknown()));
     }
     let cut_off = reader.format() == Some(ImageFormat::Jpeg) && jpeg_ends_early(bytes);

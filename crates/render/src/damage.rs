@@ -182,6 +182,7 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
         line_width,
         stroke_width,
         lights: _,
+        panoramas,
         shadows,
         draws: _,
         pipelines: _,
@@ -208,7 +209,9 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
         () if (*size, *enlarged) != (before.size, before.enlarged) => Some(DamageCause::Size),
         () if moved => Some(DamageCause::Camera),
         () if settings => Some(DamageCause::Settings),
-        () if *background != before.background => Some(DamageCause::Background),
+        () if *background != before.background || *panoramas != before.panoramas => {
+            Some(DamageCause::Background)
+        }
         () if !shadows.is_same(&before.shadows) && !shadow_reach::is_known(before, after) => {
             Some(DamageCause::Shadows)
         }

@@ -44,6 +44,7 @@ pub(crate) fn over_black_and_white(shot: &Shot) -> [FramePlan; 2] {
     [Color::BLACK, Color::WHITE].map(|ground| {
         let mut shot = shot.clone();
         shot.scene.background = ground;
+        shot.scene.hide_panoramas();
         plan_frame(&shot)
     })
 }

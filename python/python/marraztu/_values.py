@@ -6,6 +6,7 @@ import math
 import operator
 import re
 from collections.abc import Sequence
+from os import PathLike
 from typing import Any, NamedTuple
 
 from . import _marraztu
@@ -123,7 +124,13 @@ class Light(NamedTuple):
     """With shadows, the extent of the light, which makes them soft: the radius of a bulb or
     spot, or the angular diameter of a sun in radians."""
     ground: tuple[int, int, int] = (0, 0, 0)
-    """Of a sky: the colour below the horizon."""
+    """Of a sky: the colour below the horizon, without a panorama."""
+    panorama: str | PathLike[str] | None = None
+    """Of a sky: the file of a picture of everything around, as HDR, EXR, PNG or JPEG."""
+    turn: float = 0.0
+    """The angle by which a panorama is turned about Y, in radians, anticlockwise from above."""
+    shown: bool = True
+    """Whether a panorama is the background; mirrors show it in any case."""
     position: Triple | None = None
     direction: Triple | None = None
     """The direction in which the light travels."""
@@ -145,10 +152,25 @@ class Light(NamedTuple):
         color: Sequence[int] | str = (255, 255, 255),
         ground: Sequence[int] | str = (92, 84, 76),
         *,
+        panorama: str | PathLike[str] | None = None,
+        turn: float = 0.0,
+        shown: bool = True,
         shadows: bool = False,
     ) -> Light:
-        """Light from the sky above and the ground below; with shadows, surfaces hide it."""
-        return cls("sky", "sky", bytes_of(color), shadows, ground=bytes_of(ground))
+        """Light from the sky above and the ground below; with shadows, surfaces hide it.
+
+        A panorama takes the place of the two colours, and is multiplied by `color`.
+        """
+        return cls(
+            "sky",
+            "sky",
+            bytes_of(color),
+            shadows,
+            ground=bytes_of(ground),
+            panorama=panorama,
+            turn=float(turn),
+            shown=shown,
+        )
 
     @classmethod
     def sun(

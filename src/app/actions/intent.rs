@@ -42,6 +42,8 @@ pub(crate) enum Intent {
     Measure,
     /// Choose a picture as the texture of objects.
     ChooseTexture(Vec<ObjectId>),
+    /// Choose a picture as the light of the sky.
+    ChoosePanorama,
     /// Find out why an object cannot be seen.
     WhyUnseen(ObjectId),
     /// Begin or end a presentation.

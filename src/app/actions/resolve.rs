@@ -109,6 +109,7 @@ pub(crate) fn resolve(action: Action, state: &State, phase: GesturePhase) -> Res
             object(state).map(|id| clipboard(ClipboardIntent::CopyMaterial(id)))
         }
         Action::ChooseTexture => objects(state).map(Intent::ChooseTexture),
+        Action::ChoosePanorama => Ok(Intent::ChoosePanorama),
         Action::Split => items::split(scene, object(state)?).map(Intent::Change),
         Action::ToggleVisible => {
             selected(state)?;

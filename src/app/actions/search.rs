@@ -136,7 +136,7 @@ mod tests {
     }
 
     /// Words that users type, separated by commas, with the actions that they mean.
-    const WORDS: [(&str, Action); 40] = [
+    const WORDS: [(&str, Action); 41] = [
         ("flat, smooth, faceted", Action::ToggleLightNormals),
         ("wireframe, wire, wirefrm", Action::ToggleEdges),
         ("screenshot, render, png, export image", Action::SavePicture),
@@ -176,6 +176,7 @@ mod tests {
         ("font size", Action::LargerText),
         ("brightness", Action::SubjectLight),
         ("texture", Action::ChooseTexture),
+        ("hdri, environment", Action::ChoosePanorama),
         ("benchmark", Action::Panel(Panel::Laboratory)),
     ];
 

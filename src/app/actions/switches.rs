@@ -118,7 +118,7 @@ impl Action {
             Self::NewAncestor | Self::ToPanelsBack => return None,
             Self::Quit | Self::Undo | Self::Redo | Self::TakeBack | Self::Rename => return None,
             Self::Cut | Self::Copy | Self::Paste | Self::CopyMaterial => return None,
-            Self::LightStudio => return None,
+            Self::LightStudio | Self::ChoosePanorama => return None,
             Self::Duplicate | Self::Delete | Self::Split | Self::AddCamera | Self::AddSun => {
                 return None;
             }

@@ -414,6 +414,9 @@ actions! {
     LightStudio Light ONCE []
         "Studio lights" "Replaces all lights by a sky with occlusion and a large soft lamp."
         "look ambient occlusion soft shadows beautiful render setup preset";
+    ChoosePanorama Light ONCE []
+        "Panorama..." "Lights the scene with a picture of everything around, which is shown behind it."
+        "sky environment hdri hdr exr equirectangular ibl image based lighting background map";
     FitExposure Light ONCE []
         "Fit exposure" "Sets the highest exposure that does not overexpose surfaces."
         "exposure brightness overexposed burnt white tone mapping stops levels auto";

@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use crate::app::tasks::Task;
 use marraztu_core::base::Shared;
-use marraztu_core::scene::{LoadOptions, MaterialChoice, Model, Object, ObjectId, Texture, UpAxis};
+use marraztu_core::scene::{
+    LoadOptions, MaterialChoice, Model, Object, ObjectId, Panorama, Texture, UpAxis,
+};
 use marraztu_io::{
     self as io, Finding, Fragment, LoadError, Loaded, Opened, SCENE_ENDING, SceneFileError,
 };
@@ -43,6 +45,8 @@ pub(crate) enum Fetched {
     Model(Box<FetchedModel>),
     /// A texture for these objects.
     Texture(Vec<ObjectId>, Result<(Shared<Texture>, Vec<Finding>), LoadError>),
+    /// A panorama for the sky.
+    Panorama(Result<Shared<Panorama>, LoadError>),
     /// A scene.
     Scene(Box<Opening>),
     /// Items from the clipboard.
@@ -98,6 +102,7 @@ pub(crate) struct Found {
     /// Each placeholder, and the model that replaces it.
     pub(crate) models: Vec<(Shared<Model>, Result<Loaded, LoadError>)>,
     pub(crate) texture: Option<Result<Shared<Texture>, LoadError>>,
+    pub(crate) panorama: Option<Result<Shared<Panorama>, LoadError>>,
     pub(crate) findings: Vec<Finding>,
 }
 

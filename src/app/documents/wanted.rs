@@ -31,6 +31,8 @@ pub(crate) enum Wanted {
     Texture(Vec<ObjectId>),
     /// Choose a texture for the model in the material dialog.
     TextureOfModel,
+    /// Choose a panorama for the sky.
+    Panorama,
     /// Find a missing file of the scene.
     Missing(PathBuf),
 }
@@ -65,7 +67,7 @@ impl Wanted {
     pub(super) const fn kind(&self) -> Kind {
         match self {
             Self::Model | Self::Dropped | Self::Scene | Self::Missing(_) => Kind::Opened,
-            Self::Texture(_) | Self::TextureOfModel => Kind::Texture,
+            Self::Texture(_) | Self::TextureOfModel | Self::Panorama => Kind::Texture,
             Self::SceneTo(_)
             | Self::PictureTo
             | Self::PictureWithOptionsTo
@@ -108,8 +110,9 @@ impl Wanted {
             Self::Texture(_) | Self::TextureOfModel => {
                 ("Choose a texture", Mode::Open, io::texture_endings())
             }
+            Self::Panorama => ("Choose a panorama", Mode::Open, io::panorama_endings()),
             Self::Missing(path) if is_picture(path) => {
-                ("Where is the missing texture?", Mode::Open, io::texture_endings())
+                ("Where is the missing picture?", Mode::Open, io::panorama_endings())
             }
             Self::Missing(_) => ("Where is the missing model?", Mode::Open, models()),
         }
@@ -120,6 +123,6 @@ impl Wanted {
 fn is_picture(path: &Path) -> bool {
     let ending = path.extension().map(|ending| ending.to_string_lossy());
     ending.is_some_and(|ending| {
-        io::texture_endings().iter().any(|own| own.eq_ignore_ascii_case(&ending))
+        io::panorama_endings().iter().any(|own| own.eq_ignore_ascii_case(&ending))
     })
 }

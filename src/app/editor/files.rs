@@ -25,7 +25,7 @@ use crate::app::widgets::text::file_name;
 use marraztu_core::accuracy::{AccuracyPreset, Settings};
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
-use marraztu_core::edit::{Gesture, items};
+use marraztu_core::edit::{Gesture, items, lighting};
 use marraztu_core::scene::{
     Command, LoadOptions, MaterialChoice, Object, ObjectId, Subject, Texture,
 };
@@ -75,6 +75,7 @@ impl App {
             (Wanted::Dropped, _) => self.open_files(ctx, paths),
             (_, None) => {}
             (Wanted::Texture(ids), Some(path)) => self.load_texture(ctx, ids, path),
+            (Wanted::Panorama, Some(path)) => self.load_panorama(ctx, path),
             (Wanted::TextureOfModel, Some(path)) => {
                 if let Some(dialog) = self.dialogs.material() {
                     dialog.set_texture(path);
@@ -140,6 +141,13 @@ impl App {
             let mut findings = Vec::new();
             let texture = io::load_texture_with(&path, &mut findings);
             Fetched::Texture(ids, texture.map(|texture| (texture, findings)))
+        });
+    }
+
+    fn load_panorama(&mut self, ctx: &Context, path: PathBuf) {
+        let label = format!("Loading {}", file_name(&path));
+        self.begin_loading(ctx, label, false, move |_| {
+            Fetched::Panorama(io::load_panorama(&path).map(Shared::new))
         });
     }
 
@@ -236,6 +244,13 @@ impl App {
                     Ok(commands) => {
                         self.change(Command::Batch(commands), Gesture::Whole, "Choose a texture");
                     }
+                    Err(refusal) => self.refuse(refusal.to_string()),
+                }
+            }
+            Fetched::Panorama(Err(error)) => self.tell_load_error(&error),
+            Fetched::Panorama(Ok(panorama)) => {
+                match lighting::panorama(&self.state.scene, &self.state.view, panorama) {
+                    Ok(command) => self.change(command, Gesture::Whole, "Choose a panorama"),
                     Err(refusal) => self.refuse(refusal.to_string()),
                 }
             }

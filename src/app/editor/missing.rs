@@ -18,7 +18,9 @@ use crate::app::state::{MissingFiles, Notice, NoticeKind};
 use crate::app::widgets::text::{counted, file_name, one_or_count};
 use marraztu_core::base::Shared;
 use marraztu_core::edit::Gesture;
-use marraztu_core::scene::{Camera, Command, Item, Model, Object, Scene, Texture};
+use marraztu_core::scene::{
+    Camera, Command, Item, LightKind, Model, Object, Panorama, Scene, Texture,
+};
 use marraztu_io::{self as io, LoadError};
 
 impl App {
@@ -72,11 +74,13 @@ impl App {
             .map(|[old, new]| {
                 let models = models_of(&self.state.scene, &old);
                 let is_texture = textures_of(&self.state.scene, &old);
-                (old, new, models, is_texture)
+                let is_panorama = panoramas_of(&self.state.scene, &old);
+                (old, new, models, [is_texture, is_panorama])
             })
             .collect();
         self.begin_loading(ctx, label, false, move |progress| {
-            let read = |(old, new, models, is_texture): (PathBuf, PathBuf, Vec<_>, bool)| {
+            let read = |(old, new, models, is): (PathBuf, PathBuf, Vec<_>, [bool; 2])| {
+                let [is_texture, is_panorama] = is;
                 let load = |before: Shared<Model>| {
                     let loaded = io::load(&new, &before.options, progress);
                     (before, loaded)
@@ -84,7 +88,8 @@ impl App {
                 let models = models.into_iter().map(load).collect();
                 let mut findings = Vec::new();
                 let texture = is_texture.then(|| io::load_texture_with(&new, &mut findings));
-                Found { old, new, models, texture, findings }
+                let panorama = is_panorama.then(|| io::load_panorama(&new).map(Shared::new));
+                Found { old, new, models, texture, panorama, findings }
             };
             Fetched::Found(work.into_iter().map(read).collect())
         });
@@ -94,7 +99,7 @@ impl App {
     pub(crate) fn take_found(&mut self, all: Vec<Found>) {
         let mut content = Replacements::default();
         let (mut pairs, mut details) = (Vec::new(), Vec::new());
-        for Found { old, new, models, texture, findings } in all {
+        for Found { old, new, models, texture, panorama, findings } in all {
             details.extend(findings.iter().map(ToString::to_string));
             let mut add = |result: Result<(), LoadError>| match result {
                 Ok(()) => true,
@@ -113,13 +118,17 @@ impl App {
             if let Some(texture) = texture {
                 read &= add(texture.map(|it| content.textures.push((old.clone(), it))));
             }
+            if let Some(panorama) = panorama {
+                read &= add(panorama.map(|it| content.panoramas.push((old.clone(), it))));
+            }
             if read {
                 pairs.push([old, new]);
             }
         }
         // All replacements are one step of undo.
         let scene = &self.state.scene;
-        let commands: Vec<_> = content.of_objects(scene).chain(content.of_cameras(scene)).collect();
+        let of_items = content.of_objects(scene).chain(content.of_cameras(scene));
+        let commands: Vec<_> = of_items.chain(content.of_lights(scene)).collect();
         if commands.is_empty() {
             return;
         }
@@ -144,6 +153,8 @@ pub(super) struct Replacements {
     pub(super) models: Vec<(Shared<Model>, Shared<Model>)>,
     /// The paths of missing textures, and the textures found.
     textures: Vec<(PathBuf, Shared<Texture>)>,
+    /// The same of panoramas.
+    panoramas: Vec<(PathBuf, Shared<Panorama>)>,
 }
 
 impl Replacements {
@@ -161,6 +172,19 @@ impl Replacements {
             let model = self.model(&camera.model)?;
             let camera = Camera { model, ..camera.clone() };
             Some(Command::Replace(Item::Camera(id, Box::new(camera))))
+        })
+    }
+
+    /// Creates the commands that replace the panoramas of skies.
+    fn of_lights(&self, scene: &Scene) -> impl Iterator<Item = Command> {
+        scene.lights.iter().filter_map(|(id, light)| {
+            let missing = light.missing_file()?;
+            let (_, found) = self.panoramas.iter().find(|(old, _)| old == missing)?;
+            let mut light = light.clone();
+            if let LightKind::Sky { panorama: Some(own), .. } = &mut light.kind {
+                own.panorama = found.clone();
+            }
+            Some(Command::Replace(Item::Light(id, Box::new(light))))
         })
     }
 
@@ -214,6 +238,11 @@ fn models_of(scene: &Scene, file: &Path) -> Vec<Shared<Model>> {
 fn textures_of(scene: &Scene, file: &Path) -> bool {
     let mut textures = scene.objects.iter().filter_map(|(_, object)| object.texture.as_ref());
     textures.any(|texture| texture.is_placeholder() && texture.source == file)
+}
+
+/// Returns whether a sky has a placeholder of this panorama.
+fn panoramas_of(scene: &Scene, file: &Path) -> bool {
+    scene.lights.iter().any(|(_, light)| light.missing_file() == Some(file))
 }
 
 /// Pairs the old paths of missing files with new ones: in the folder of a found file, or at the

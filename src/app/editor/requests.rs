@@ -172,6 +172,7 @@ impl App {
             }
             Ok(Intent::Measure) => self.measure(ctx),
             Ok(Intent::ChooseTexture(ids)) => self.ask_file(ctx, Wanted::Texture(ids), ""),
+            Ok(Intent::ChoosePanorama) => self.ask_file(ctx, Wanted::Panorama, ""),
             Ok(Intent::WhyUnseen(id)) => self.why_unseen(ctx, id),
             Ok(Intent::Present) => self.present(ctx),
             Ok(Intent::Zoom(zoom)) => ctx.set_zoom_factor(zoom),

@@ -87,6 +87,7 @@ const fn opens_field(action: Action) -> bool {
             | Action::ExportModels
             | Action::ExportScene
             | Action::ChooseTexture
+            | Action::ChoosePanorama
             | Action::Panel(Panel::CheatSheet)
     )
 }

@@ -17,10 +17,11 @@ use glam::DVec3;
 
 use super::items::{change_light, put_light};
 use super::{Change, Refusal, framing};
+use crate::base::Shared;
 use crate::base::color::Color;
 use crate::scene::{
     AnchorMut, Attenuation, Command, HALF_APERTURE, ItemId, Light, LightId, LightKind, LightOrigin,
-    Object, ObjectId, Scene, SpotOwner, Tracked, View,
+    Object, ObjectId, Panorama, Scene, SkyPanorama, SpotOwner, Tracked, View,
 };
 
 /// The distance of the first scene's camera, for which the first scene's lights are made.
@@ -93,7 +94,7 @@ pub fn studio(scene: &Scene, view: &View) -> Change {
     for id in scene.lights.ids() {
         apply(&mut lit, Command::Remove(ItemId::Light(id)))?;
     }
-    let sky = LightKind::Sky { ground: STUDIO_GROUND };
+    let sky = LightKind::Sky { ground: STUDIO_GROUND, panorama: None };
     let lamp = LightKind::Sun { direction: Tracked::new(-KEY_FROM) };
     for (name, kind, color, size) in
         [("sky", sky, STUDIO_SKY, 0.0), ("lamp", lamp, STUDIO_LAMP, STUDIO_LAMP_ANGLE)]
@@ -107,13 +108,46 @@ pub fn studio(scene: &Scene, view: &View) -> Change {
     for id in ids {
         let dim = |light: &mut Light| {
             light.color = dimmed(light.color, factor);
-            if let LightKind::Sky { ground } = &mut light.kind {
+            if let LightKind::Sky { ground, .. } = &mut light.kind {
                 *ground = dimmed(*ground, factor);
             }
         };
         let command = change_light(&lit, id, dim)?;
         apply(&mut lit, command)?;
     }
+    Ok(Command::Batch(commands))
+}
+
+/// Lights the scene with a panorama, which is also the background: a sky gets it, the selected one
+/// first. Without a sky, one with occlusion replaces all lights.
+///
+/// # Errors
+/// If the sky is locked.
+pub fn panorama(scene: &Scene, view: &View, panorama: Shared<Panorama>) -> Change {
+    let of = |turn: f64| Some(SkyPanorama { panorama: panorama.clone(), turn, is_shown: true });
+    let is_sky = |id: &LightId| {
+        scene.lights.get(*id).is_some_and(|light| matches!(light.kind, LightKind::Sky { .. }))
+    };
+    let selected = view.light.filter(is_sky);
+    if let Some(id) = selected.or_else(|| scene.lights.ids().find(is_sky)) {
+        return change_light(scene, id, |light| {
+            if let LightKind::Sky { panorama, .. } = &mut light.kind {
+                // The colour of a plain sky is not meant for a picture of one.
+                match panorama {
+                    Some(own) => *panorama = of(own.turn),
+                    None => (*panorama, light.color) = (of(0.0), Color::WHITE),
+                }
+            }
+        });
+    }
+    let (mut lit, mut commands) = (scene.clone(), Vec::new());
+    for id in scene.lights.ids() {
+        let command = Command::Remove(ItemId::Light(id));
+        command.clone().apply(&mut lit)?;
+        commands.push(command);
+    }
+    let kind = LightKind::Sky { ground: Color::BLACK, panorama: of(0.0) };
+    commands.push(put_light(&lit, Light { shadows: true, ..Light::new("sky", 0, kind) })?);
     Ok(Command::Batch(commands))
 }
 

@@ -43,7 +43,7 @@ pub const fn sun() -> LightKind {
 
 /// Returns the kind of a blue sky over a brown ground.
 pub const fn sky() -> LightKind {
-    LightKind::Sky { ground: Color([92, 84, 76]) }
+    LightKind::Sky { ground: Color([92, 84, 76]), panorama: None }
 }
 
 /// Returns the kind of a bulb at the origin.

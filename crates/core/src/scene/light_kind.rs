@@ -7,6 +7,7 @@
 use glam::DVec3;
 
 use super::anchor::{Anchor, AnchorMut, Orbit, SpotOwner};
+use super::panorama::SkyPanorama;
 use super::tracked::Tracked;
 use crate::base::color::Color;
 
@@ -15,10 +16,13 @@ use crate::base::color::Color;
 pub enum LightKind {
     /// Ambient light, from everywhere.
     Ambient,
-    /// Light from the sky above and the ground below, with the light's colour above the horizon.
+    /// Light from the sky above and the ground below, with the light's colour above the horizon;
+    /// or the light of a panorama, multiplied by the light's colour.
     Sky {
-        /// The colour below the horizon.
+        /// The colour below the horizon, without a panorama.
         ground: Color,
+        /// The panorama.
+        panorama: Option<SkyPanorama>,
     },
     /// Directional light, from infinitely far away.
     Sun {
@@ -151,6 +155,14 @@ impl LightKind {
         }
     }
 
+    /// Returns the panorama of a sky that has one.
+    pub const fn panorama(&self) -> Option<&SkyPanorama> {
+        match self {
+            Self::Sky { panorama, .. } => panorama.as_ref(),
+            Self::Ambient | Self::Sun { .. } | Self::Bulb { .. } | Self::Spot { .. } => None,
+        }
+    }
+
     /// Returns the source of the light's position and direction.
     pub const fn anchor(&self) -> Anchor<'_> {
         match self {
@@ -230,7 +242,8 @@ impl LightKind {
                 aim.now().position.is_finite() && aim.now().direction.is_finite()
             }),
         };
-        anchored && self.numbers().all(|(row, number)| row.is_valid(number))
+        let is_turned = self.panorama().is_none_or(|sky| sky.turn.is_finite());
+        anchored && is_turned && self.numbers().all(|(row, number)| row.is_valid(number))
     }
 }
 

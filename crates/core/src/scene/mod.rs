@@ -15,6 +15,7 @@ mod missing;
 mod model;
 mod object;
 mod optics;
+mod panorama;
 mod shapes;
 mod smoothing;
 mod spheres;
@@ -48,6 +49,7 @@ pub use model::{
 };
 pub use object::{Object, PartLook, Sides, Spin, Surface};
 pub use optics::{Optics, Reflection, Transmission};
+pub use panorama::{Moments, Panorama, PanoramaLight, SkyPanorama};
 pub use shapes::Shape;
 pub use smoothing::{Crease, Smoothing};
 pub use spheres::Spheres;
@@ -153,6 +155,21 @@ impl Scene {
             ItemId::Camera(id) => &self.cameras.get(id)?.name,
             ItemId::Light(id) => &self.lights.get(id)?.name,
         })
+    }
+
+    /// Hides the panoramas behind all objects, which leaves their light.
+    pub fn hide_panoramas(&mut self) {
+        let shown = self
+            .lights
+            .iter()
+            .filter(|(_, light)| light.kind.panorama().is_some_and(|panorama| panorama.is_shown));
+        let hidden: Vec<(LightId, Light)> = shown.map(|(id, light)| (id, light.clone())).collect();
+        for (id, mut light) in hidden {
+            if let LightKind::Sky { panorama: Some(panorama), .. } = &mut light.kind {
+                panorama.is_shown = false;
+            }
+            self.lights.replace(id, light);
+        }
     }
 
     /// Returns the lowest free slot.

@@ -6,44 +6,50 @@ use std::path::{Path, PathBuf};
 use super::box_sizes::BoxSizes;
 use super::error::SceneFileError;
 use super::format::{FileModel, FileScene, FileTexture};
+use super::light::FileLight;
 use super::model_key::{ModelKey, key};
-use super::save::{file_model, file_texture};
+use super::save::{file_model, file_path, file_texture};
 use super::{open, paths};
 use crate::error::LoadError;
 use crate::findings::{Finding, FindingKind, Findings};
 use crate::load::load_with;
+use crate::panorama::{load_panorama, panorama_of};
 use crate::progress::Progress;
 use crate::texture::Pictures;
 use crate::{assets, examples};
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
-use marraztu_core::scene::{Crease, LoadOptions, Model, Scale, Scene, Shape, Texture};
+use marraztu_core::scene::{Crease, LoadOptions, Model, Panorama, Scale, Scene, Shape, Texture};
 
-/// The models and textures of an open scene, which can be reused.
+/// The models, textures and panoramas of an open scene, which can be reused.
 #[derive(Debug, Default)]
 pub struct Known {
     models: Vec<Shared<Model>>,
     textures: Vec<Shared<Texture>>,
+    panoramas: Vec<Shared<Panorama>>,
 }
 
 impl Known {
-    /// Collects the models and textures of a scene.
+    /// Collects the models, textures and panoramas of a scene.
     pub fn of(scene: &Scene) -> Self {
         let objects = || scene.objects.iter().map(|(_, object)| object);
         let cameras = scene.cameras.iter().map(|(_, camera)| camera.model.clone());
+        let panoramas = scene.lights.iter().filter_map(|(_, light)| light.kind.panorama());
         Self {
             models: objects().map(|object| object.model.clone()).chain(cameras).collect(),
             textures: objects().filter_map(|object| object.texture.clone()).collect(),
+            panoramas: panoramas.map(|sky| sky.panorama.clone()).collect(),
         }
     }
 }
 
-/// The loaded models and textures of a scene file. A placeholder replaces each one that is missing
+/// The loaded models, textures and panoramas of a scene file. A placeholder replaces each one that is missing
 /// or cannot be read.
 pub(super) struct Files {
     folder: PathBuf,
     models: BTreeMap<ModelKey, Shared<Model>>,
     textures: BTreeMap<String, Shared<Texture>>,
+    panoramas: BTreeMap<String, Shared<Panorama>>,
     /// The pictures of models and textures: one file may be used as both.
     pictures: Pictures,
     /// The findings in the files.
@@ -55,9 +61,15 @@ pub(super) struct Files {
 impl Files {
     /// Prepares to load the files of the scene file `name` in `folder`.
     pub(super) fn new(folder: PathBuf, name: &str) -> Self {
-        let (models, textures) = (BTreeMap::new(), BTreeMap::new());
-        let (pictures, lost) = (Pictures::default(), Findings::new(name));
-        Self { folder, models, textures, pictures, findings: Vec::new(), lost }
+        Self {
+            folder,
+            models: BTreeMap::new(),
+            textures: BTreeMap::new(),
+            panoramas: BTreeMap::new(),
+            pictures: Pictures::default(),
+            findings: Vec::new(),
+            lost: Findings::new(name),
+        }
     }
 
     /// Registers models and textures that can be reused. A file name that is not UTF-8 is skipped:
@@ -72,6 +84,11 @@ impl Files {
         for texture in &known.textures {
             if let Ok(named) = file_texture(texture, nowhere) {
                 self.textures.insert(named.path, texture.clone());
+            }
+        }
+        for panorama in &known.panoramas {
+            if let Ok(path) = file_path(&panorama.source, nowhere) {
+                self.panoramas.insert(path, panorama.clone());
             }
         }
     }
@@ -113,7 +130,26 @@ impl Files {
                 self.models.insert(key(model), Shared::new(placeholder));
             }
         }
-        self.load_textures(file)
+        self.load_textures(file)?;
+        self.load_panoramas(file)
+    }
+
+    fn load_panoramas(&mut self, file: &FileScene) -> Result<(), SceneFileError> {
+        for path in file.lights.iter().filter_map(FileLight::panorama) {
+            if self.panoramas.contains_key(path) {
+                continue;
+            }
+            let place = self.place(path);
+            let loaded = match examples::content(&place) {
+                Some(content) => panorama_of(&place, &content),
+                None => load_panorama(&place),
+            };
+            let loaded = loaded.map(Shared::new);
+            let lost = |source| Panorama::placeholder(source).into();
+            let panorama = self.found((path, &place), loaded, lost)?;
+            self.panoramas.insert(path.to_owned(), panorama);
+        }
+        Ok(())
     }
 
     fn load_textures(&mut self, file: &FileScene) -> Result<(), SceneFileError> {
@@ -139,8 +175,18 @@ impl Files {
             Some(content) => examples::texture(&place, &content),
             None => self.pictures.texture(&place, &mut self.findings),
         };
+        self.found((path, &place), loaded, |source| Texture::placeholder(source).into())
+    }
+
+    /// Returns a picture, or a placeholder with a finding if it was not loaded.
+    fn found<T>(
+        &mut self,
+        (path, place): (&str, &Path),
+        loaded: Result<Shared<T>, LoadError>,
+        placeholder: fn(PathBuf) -> Shared<T>,
+    ) -> Result<Shared<T>, SceneFileError> {
         match loaded {
-            Ok(texture) => Ok(texture),
+            Ok(loaded) => Ok(loaded),
             Err(LoadError::Cancelled) => Err(LoadError::Cancelled.into()),
             Err(error) => {
                 // A damaged file and a missing one need different remedies.
@@ -149,7 +195,7 @@ impl Files {
                 } else {
                     self.lost.add(FindingKind::TextureMissing, path, None);
                 }
-                Ok(Shared::new(Texture::placeholder(complete(&place))))
+                Ok(placeholder(complete(place)))
             }
         }
     }
@@ -251,6 +297,10 @@ impl open::Needs for Files {
         self.models.get(&key(model)).expect("every model of the file was loaded").clone()
     }
 
+    fn panorama(&self, path: &str) -> Shared<Panorama> {
+        self.panoramas.get(path).expect("every panorama of the file was loaded").clone()
+    }
+
     fn texture(&self, texture: &FileTexture) -> Shared<Texture> {
         let plain = self.textures.get(&texture.path).expect("every texture of the file was loaded");
         let FileTexture { wrap, offset, scale, .. } = *texture;
@@ -261,12 +311,16 @@ impl open::Needs for Files {
     }
 }
 
-/// Replaces models and textures when only the scene file itself is checked.
+/// Replaces models, textures and panoramas when only the scene file itself is checked.
 pub(super) struct StandIns;
 
 impl open::Needs for StandIns {
     fn model(&self, _: &FileModel) -> Shared<Model> {
         assets::cam_model()
+    }
+
+    fn panorama(&self, path: &str) -> Shared<Panorama> {
+        Panorama::placeholder(path.into()).into()
     }
 
     fn texture(&self, texture: &FileTexture) -> Shared<Texture> {

@@ -71,7 +71,7 @@ pub fn items_to_text(scene: &Scene, items: &[ItemId]) -> Result<String, String> 
         fragment.cameras.push(file_camera(id.0, camera, nowhere)?);
     }
     for (id, light) in scene.lights.iter().filter(|(id, _)| items.contains(&ItemId::Light(*id))) {
-        fragment.lights.push(file_light(id.0, light));
+        fragment.lights.push(file_light(id.0, light, nowhere)?);
     }
     text(&fragment)
 }

@@ -1,13 +1,18 @@
 //! Lights in scene files: their format, and conversions in both directions.
 
+use std::path::Path;
+
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::fields::{finite, white, yes};
+use super::format::written_bare;
+use super::open::Needs;
+use super::save::file_path;
 use marraztu_core::base::color::Color;
 use marraztu_core::base::math;
 use marraztu_core::scene::{
-    Aim, Attenuation, CameraId, Light, LightKind, ObjectId, Orbit, SpotOwner, Tracked,
+    Aim, Attenuation, CameraId, Light, LightKind, ObjectId, Orbit, SkyPanorama, SpotOwner, Tracked,
 };
 
 #[derive(Debug, Serialize, Deserialize)]
@@ -34,6 +39,8 @@ pub(super) enum FileLightKind {
     Ambient,
     Sky {
         ground: [u8; 3],
+        #[serde(default, with = "written_bare", skip_serializing_if = "Option::is_none")]
+        panorama: Option<FilePanorama>,
     },
     Sun {
         direction: [f64; 3],
@@ -50,6 +57,16 @@ pub(super) enum FileLightKind {
     },
 }
 
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct FilePanorama {
+    pub(super) path: String,
+    #[serde(default, skip_serializing_if = "is_zero")]
+    turn: f64,
+    #[serde(default = "yes")]
+    shown: bool,
+}
+
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) enum FileOwner {
     SelectedObject,
@@ -63,10 +80,27 @@ fn is_zero(size: &f64) -> bool {
     *size == 0.0
 }
 
-pub(super) fn file_light(id: u32, light: &Light) -> FileLight {
+impl FileLight {
+    /// Returns the path of its panorama.
+    pub(super) fn panorama(&self) -> Option<&str> {
+        match &self.kind {
+            FileLightKind::Sky { panorama, .. } => panorama.as_ref().map(|it| it.path.as_str()),
+            _ => None,
+        }
+    }
+}
+
+/// Converts a light. Fails with the reason if the path of its panorama cannot be written.
+pub(super) fn file_light(id: u32, light: &Light, folder: &Path) -> Result<FileLight, String> {
     let kind = match &light.kind {
         LightKind::Ambient => FileLightKind::Ambient,
-        LightKind::Sky { ground: Color(ground) } => FileLightKind::Sky { ground: *ground },
+        LightKind::Sky { ground: Color(ground), panorama } => {
+            let panorama = panorama.as_ref().map(|SkyPanorama { panorama, turn, is_shown }| {
+                let path = file_path(&panorama.source, folder)?;
+                Ok::<_, String>(FilePanorama { path, turn: *turn, shown: *is_shown })
+            });
+            FileLightKind::Sky { ground: *ground, panorama: panorama.transpose()? }
+        }
         LightKind::Sun { direction } => {
             FileLightKind::Sun { direction: direction.now().to_array() }
         }
@@ -81,7 +115,7 @@ pub(super) fn file_light(id: u32, light: &Light) -> FileLight {
     };
     let (name, Color(color)) = (light.name.clone(), light.color);
     let Light { slot, on, attenuation, shadows, size, .. } = *light;
-    FileLight { id, name, slot, on, color, attenuation, shadows, size, kind }
+    Ok(FileLight { id, name, slot, on, color, attenuation, shadows, size, kind })
 }
 
 pub(super) fn file_owner(owner: &SpotOwner) -> FileOwner {
@@ -98,10 +132,19 @@ pub(super) fn file_owner(owner: &SpotOwner) -> FileOwner {
     }
 }
 
-pub(super) fn read_light(light: &FileLight) -> Result<Light, String> {
+pub(super) fn read_light(light: &FileLight, needs: &dyn Needs) -> Result<Light, String> {
     let kind = match light.kind {
         FileLightKind::Ambient => LightKind::Ambient,
-        FileLightKind::Sky { ground } => LightKind::Sky { ground: Color(ground) },
+        FileLightKind::Sky { ground, ref panorama } => {
+            if let Some(panorama) = panorama {
+                finite("its panorama's turn", &[panorama.turn])?;
+            }
+            let panorama = panorama.as_ref().map(|it| {
+                let panorama = needs.panorama(&it.path);
+                SkyPanorama { panorama, turn: it.turn, is_shown: it.shown }
+            });
+            LightKind::Sky { ground: Color(ground), panorama }
+        }
         FileLightKind::Sun { direction } => {
             LightKind::Sun { direction: Tracked::new(read_direction(direction)?) }
         }

@@ -15,19 +15,22 @@ use crate::findings::{FindingKind, Findings};
 use marraztu_core::base::{Shared, color::Color};
 use marraztu_core::scene::{
     Camera, CameraId, CameraMode, Command, CommandError, Item, LightId, List, MaterialChoice,
-    Model, Object, ObjectId, Objects, Pose, Scene, Sides, SpotOwner, Texture, Tracked, View,
+    Model, Object, ObjectId, Objects, Panorama, Pose, Scene, Sides, SpotOwner, Texture, Tracked,
+    View,
 };
 
 /// The most hidden parts of missing models that are kept: it limits the memory that a damaged file
 /// takes.
 const MOST_HIDDEN: usize = 1_000_000;
 
-/// The models and textures that a scene file needs.
+/// The models, textures and panoramas that a scene file needs.
 pub(super) trait Needs {
     /// Returns the model that the file refers to.
     fn model(&self, model: &FileModel) -> Shared<Model>;
     /// Returns the texture that the file refers to.
     fn texture(&self, texture: &FileTexture) -> Shared<Texture>;
+    /// Returns the panorama with this path in the file.
+    fn panorama(&self, path: &str) -> Shared<Panorama>;
 }
 
 /// Builds the scene and the view of a file. Fails with the reason if the scene is invalid.
@@ -83,7 +86,7 @@ pub(super) fn scene_with(
         if !slots.insert(light.slot) {
             return Err(format!("{what}: another light has slot {} already", light.slot));
         }
-        let item = read_light(light).map_err(|reason| format!("{what}: {reason}"))?;
+        let item = read_light(light, needs).map_err(|reason| format!("{what}: {reason}"))?;
         insert(at, Item::Light(LightId(light.id), Box::new(item)), light.id, what)?;
     }
     if file.cameras.is_empty() {

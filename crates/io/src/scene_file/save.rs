@@ -32,13 +32,14 @@ pub(super) fn file_scene(
 ) -> Result<FileScene, String> {
     let objects = scene.objects.iter().map(|(id, item)| file_object(id.0, item, folder));
     let cameras = scene.cameras.iter().map(|(id, item)| file_camera(id.0, item, folder));
+    let lights = scene.lights.iter().map(|(id, item)| file_light(id.0, item, folder));
     Ok(FileScene {
         version: VERSION,
         background: scene.background.0,
         next_id: scene.next_id,
         objects: objects.collect::<Result<_, _>>()?,
         cameras: cameras.collect::<Result<_, _>>()?,
-        lights: scene.lights.iter().map(|(id, item)| file_light(id.0, item)).collect(),
+        lights: lights.collect::<Result<_, _>>()?,
         locked: FileLocked::of(scene),
         view: FileView::of(view, window),
         settings: *settings,
@@ -64,7 +65,7 @@ pub(super) fn file_model(model: &Model, folder: &Path) -> Result<FileModel, Stri
     Ok(FileModel::File { path, up, scale, winding, crease, bumps })
 }
 
-fn file_path(path: &Path, folder: &Path) -> Result<String, String> {
+pub(super) fn file_path(path: &Path, folder: &Path) -> Result<String, String> {
     if let Some(example) = path.to_str().filter(|_| is_example(path)) {
         return Ok(example.to_owned());
     }

@@ -2,6 +2,7 @@
 
 pub(crate) mod draw;
 pub(crate) mod extras;
+pub(crate) mod panorama;
 mod prepare;
 pub(crate) mod program;
 pub(crate) mod raster_mode;
@@ -12,6 +13,7 @@ pub(crate) mod variants;
 use glam::{DMat4, DVec3};
 
 use self::draw::{Draw, Pipeline};
+use self::panorama::PlacedPanorama;
 use self::raster_mode::RasterMode;
 use self::shading_mode::ShadingMode;
 use self::shadows::Shadows;
@@ -64,6 +66,8 @@ pub struct FramePlan {
     pub(crate) stroke_width: i32,
     /// The lights in view space, the oldest first.
     pub(crate) lights: Vec<ViewLight>,
+    /// The panoramas of the lights that have one.
+    pub(crate) panoramas: Vec<PlacedPanorama>,
     /// The ids of the lights, in the same order.
     pub(crate) light_ids: Vec<LightId>,
     /// The lights that cast shadows, and the casters.

@@ -11,6 +11,7 @@
 mod ambient;
 mod batch;
 mod bulb;
+mod panorama;
 mod phong;
 pub(crate) mod region;
 mod shader;
@@ -20,7 +21,7 @@ mod sum;
 mod sun;
 
 pub(crate) use batch::{Batch, Rows, Sample, columns, load, set, store, turned};
-pub(crate) use phong::{Form, LightTerm, PhongMaterial, ViewLight};
+pub(crate) use phong::{Form, Irradiance, LightTerm, PhongMaterial, ViewLight};
 pub(crate) use region::Region;
 pub(crate) use shader::LightRow;
 pub(crate) use sum::{add_light, set_lights};
@@ -37,6 +38,8 @@ pub(crate) enum Which {
     Ambient,
     /// The sky.
     Sky,
+    /// A sky with a panorama.
+    Panorama,
     /// A sun.
     Sun,
     /// A bulb.
@@ -49,6 +52,8 @@ pub(crate) enum Which {
 pub(crate) static AMBIENT: LightRow = LightRow::of::<ambient::Ambient>();
 /// The row of the sky.
 pub(crate) static SKY: LightRow = LightRow::of::<sky::Sky>();
+/// The row of a sky with a panorama.
+pub(crate) static PANORAMA: LightRow = LightRow::of::<panorama::Panorama>();
 /// The row of the sun.
 pub(crate) static SUN: LightRow = LightRow::of::<sun::Sun>();
 /// The row of bulbs.
@@ -60,6 +65,7 @@ pub(crate) static SPOT: LightRow = LightRow::of::<spot::Spot>();
 pub(crate) const fn row_of(kind: &LightKind) -> &'static LightRow {
     match kind {
         LightKind::Ambient => &AMBIENT,
+        LightKind::Sky { panorama: Some(_), .. } => &PANORAMA,
         LightKind::Sky { .. } => &SKY,
         LightKind::Sun { .. } => &SUN,
         LightKind::Bulb { .. } => &BULB,
@@ -78,6 +84,7 @@ fn reflected<M: Lanes>(
     match term.which {
         Which::Ambient => ambient::Ambient::shade(lanes, sample, term),
         Which::Sky => sky::Sky::shade(lanes, sample, term),
+        Which::Panorama => panorama::Panorama::shade(lanes, sample, term),
         Which::Sun => sun::Sun::shade(lanes, sample, term),
         Which::Bulb => bulb::Bulb::shade(lanes, sample, term),
         Which::Spot => spot::Spot::shade(lanes, sample, term),

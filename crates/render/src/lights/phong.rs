@@ -15,6 +15,8 @@ pub(crate) struct ViewLight {
     pub(crate) color: [f64; 3],
     /// The colour below the horizon, of a sky.
     pub(crate) ground: [f64; 3],
+    /// The light of a sky with a panorama.
+    pub(crate) irradiance: Irradiance<f64>,
     /// The position.
     pub(crate) position: [f64; 3],
     /// The direction of its light, of length 1.
@@ -26,6 +28,10 @@ pub(crate) struct ViewLight {
     /// The exponent that concentrates the light along the axis.
     pub(crate) exponent: f64,
 }
+
+/// The diffuse light on a surface, as a polynomial of its normal n, for each channel: the factors
+/// of 1, x, y, z, x^2, y^2, z^2, xy, xz and yz.
+pub(crate) type Irradiance<T> = [[T; 10]; 3];
 
 /// The coefficients of the Phong model.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -76,6 +82,8 @@ pub(crate) struct LightTerm<T> {
     pub(crate) specular: [T; 3],
     /// Kd times the colour below the horizon.
     pub(crate) ground: [T; 3],
+    /// Kd times the light of a panorama, if there is one.
+    pub(crate) irradiance: Option<Box<Irradiance<T>>>,
     /// See [`ViewLight::position`].
     pub(crate) position: [T; 3],
     /// The direction against the light's travel.
@@ -113,6 +121,11 @@ impl<T: Number> LightTerm<T> {
             diffuse: times(material.diffuse),
             specular: times(material.specular),
             ground: all([0, 1, 2].map(|i| light.ground[i] * material.diffuse[i])),
+            irradiance: (which == Which::Panorama).then(|| {
+                let of =
+                    |i: usize| light.irradiance[i].map(|it| T::from_f64(it * material.diffuse[i]));
+                Box::new([of(0), of(1), of(2)])
+            }),
             position: all(light.position),
             axis: all(light.direction.map(|x| -x)),
             attenuation: all(light.attenuation),

@@ -121,6 +121,7 @@ fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
         line_width: if view.wide_lines { 2 } else { 1 },
         stroke_width: stroke_width(view, settings.resolution),
         lights: Vec::new(),
+        panoramas: Vec::new(),
         light_ids: Vec::new(),
         shadows: Shadows::default(),
         draws: Vec::new(),

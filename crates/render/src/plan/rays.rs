@@ -2,11 +2,12 @@
 
 use super::maps::mapped;
 use super::planning::{Ground, Planner, Planning};
+use super::shadows::light_samples;
 use super::uses::Notes;
 use crate::frame::FramePlan;
 use crate::frame::extras::SurfaceRays;
 use crate::lights::PhongMaterial;
-use marraztu_core::accuracy::{Bounces, LightAt, Settings};
+use marraztu_core::accuracy::{Bounces, LightAt, Samples, Settings};
 use marraztu_core::scene::{MapKind, Object, Optics, PartLook, Reflection, Surface, Transmission};
 
 impl Planner<'_> {
@@ -62,13 +63,18 @@ impl Planner<'_> {
         // What the observer does not see may be seen in a mirror, and no light is left out because
         // of the view. Points that rays meet are no pixels: each is lit.
         let shot = self.shot.with(Settings { light: LightAt::Pixel, ..self.shot.settings });
-        let plan = FramePlan {
+        let mut plan = FramePlan {
             light_at: LightAt::Pixel,
             lit_by_sample: false,
             draws: Vec::new(),
             pipelines: Vec::new(),
             ..into.plan.clone()
         };
+        // A pixel has a ray for each of up to sixteen samples.
+        if !plan.shadows.casters.is_empty() {
+            let rays = into.plan.samples.count().min(Samples::Sixteen.count());
+            plan.shadows.samples = light_samples(&plan, rays);
+        }
         let mut around = Planning::new(plan, Notes::default());
         let Self { observer, shining, .. } = self;
         Planner { shot: &shot, observer, shining, is_around: true }.add_objects(&mut around);

@@ -21,12 +21,11 @@ use marraztu_core::scene::{Fill, ItemId, MapKind, Object, ObjectId};
 /// The fewest samples of a light for each sample of a pixel, unless fewer are chosen.
 const LEAST_SAMPLES: u32 = 16;
 
-/// Returns the samples of a light for each point. Samples of a pixel that are lit one by one share
-/// those of the pixel.
-fn light_samples(plan: &FramePlan) -> u32 {
+/// Returns the samples of a light for each of the points of a pixel that are lit one by one: they
+/// share those of the pixel.
+pub(super) fn light_samples(plan: &FramePlan, points: u32) -> u32 {
     let chosen = plan.variants.light_samples.count();
-    let lit = if plan.lit_by_sample { plan.samples.count() } else { 1 };
-    (chosen / lit).max(chosen.min(LEAST_SAMPLES))
+    (chosen / points).max(chosen.min(LEAST_SAMPLES))
 }
 
 impl Planner<'_> {
@@ -40,7 +39,8 @@ impl Planner<'_> {
             objects.retain(|(id, object)| self.not_asked_for(*id, object).is_none());
             let casters = objects.into_iter().filter_map(|(id, object)| self.caster(id, object));
             into.plan.shadows.casters = casters.collect();
-            into.plan.shadows.samples = light_samples(&into.plan);
+            let points = if into.plan.lit_by_sample { into.plan.samples.count() } else { 1 };
+            into.plan.shadows.samples = light_samples(&into.plan, points);
         }
         if into.plan.shadows.casters.is_empty() {
             into.plan.shadows = Shadows::default();

@@ -6,6 +6,7 @@ use super::observer::ObserverSpace;
 use super::planning::{Planning, Shining};
 use super::rules::LightFacts;
 use super::uses::{Effect, EffectState, EffectUse};
+use crate::frame::panorama::PlacedPanorama;
 use crate::frame::shadows::ShadowSource;
 use crate::lights::{self, LightRow, ViewLight};
 use marraztu_core::base::color::Color;
@@ -58,18 +59,25 @@ pub(super) fn view_lights(
             (true, false) => color.factors().map(|x| x * factor),
             (true, true) => color.factors().map(|x| color::linear(x) * factor),
         };
+        let color = shine(light.color);
+        let panorama = light
+            .kind
+            .panorama()
+            .map(|sky| PlacedPanorama::new(sky, (index, color), observer.view_from_world, linear));
         into.plan.lights.push(ViewLight {
-            color: shine(light.color),
+            color,
             ground: match light.kind {
-                LightKind::Sky { ground } => shine(ground),
+                LightKind::Sky { ground, .. } => shine(ground),
                 _ => [0.0; 3],
             },
+            irradiance: panorama.as_ref().map_or_else(Default::default, PlacedPanorama::irradiance),
             position: position.to_array(),
             direction: turned.unwrap_or(DVec3::NEG_Z).to_array(),
             attenuation,
             cos_half_aperture: source.cos_half_aperture,
             exponent: source.exponent.min(LARGEST),
         });
+        into.plan.panoramas.extend(panorama.filter(|_| shines));
         shining.push(Shining {
             id,
             name: light.name.clone(),

@@ -7,6 +7,7 @@
 //! pixel at a time; `perspective` turns them into perspective-correct weights for many pixels at
 //! once.
 
+pub(crate) mod background;
 pub(crate) mod clip;
 pub(crate) mod clipped_weights;
 pub mod coverage;

@@ -22,16 +22,15 @@ use super::map_texels::TexelSource;
 use super::optics::{Media, Meeting, reflectance};
 use super::shader::Shader;
 use super::surroundings::{corners_of, normals_of};
+use crate::frame::Eye;
 use crate::frame::draw::{Draw, Pipeline};
 use crate::frame::extras::SurfaceRays;
-use crate::frame::{Eye, FramePlan};
 use crate::lights::Rows;
 use crate::rays::{Corners, Hit, OwnTriangles, Ray, RayStack};
 use crate::screen::sample_positions::MANY;
 use crate::screen::weights::Weights;
 use crate::shadow::rays::RayCount;
 use crate::simd::{BATCH, Bits, dispatch};
-use marraztu_core::base::color::linear;
 use marraztu_core::base::math::unit;
 
 /// The memory of a thread for rays, reused from list to list.
@@ -155,7 +154,7 @@ impl<T: ShadingNumber> Shader<T> {
         let mapped = self.mapped_specular(group, rays);
         let positions = frame.sample_positions();
         let share = 1.0 / f64::from(positions.shares());
-        let pixel = pixel_size(plan) * share.sqrt();
+        let pixel = plan.pixel_size() * share.sqrt();
         let vertices = frame.corners_of(group.draw_index);
         let draw = group.draw;
         for slot in 0..self.attributes.count {
@@ -335,12 +334,10 @@ impl<T: ShadingNumber> Bounces<T> {
         next.clear();
         let plan = around.context.plan;
         let most = around.context.mode().bounces;
-        let background = plan.background.factors();
-        let is_linear = around.context.mode().is_linear();
-        let background = if is_linear { background.map(linear) } else { background };
         for (branch, met) in branches.iter().zip(&*met) {
             let Some(met) = met else {
-                add(&mut sums[branch.target], branch.weight, background);
+                let behind = plan.light_behind(branch.ray.towards, branch.cone.spread);
+                add(&mut sums[branch.target], branch.weight, behind);
                 continue;
             };
             let weight = branch.weight.map(|weight| weight * met.opacity);
@@ -470,9 +467,4 @@ fn curvature([a, b, c]: &Corners, draw: &Draw, (triangle, is_front): (u32, bool)
     };
     let sum = along(*a, *b, p, q) + along(*b, *c, q, r) + along(*c, *a, r, p);
     if is_front { sum / 3.0 } else { -sum / 3.0 }
-}
-
-/// Returns the size of a pixel in view space at the distance 1, or anywhere without perspective.
-fn pixel_size(plan: &FramePlan) -> f64 {
-    2.0 / (plan.viewport.height * plan.clip_from_view.y_axis.y)
 }

@@ -115,7 +115,7 @@ fn one<T: ShadingNumber>(
     let plain = |part, [r, g, b, _]: [u8; 4]| plain(at, part, [r, g, b]);
     let ShadingContext { plan, frame, .. } = *context;
     match seen(word) {
-        Visible::Background => (plain(Part::Background, plan.background.opaque()), 1.0),
+        Visible::Background => (plain(Part::Background, plan.behind().at([x, y])), 1.0),
         Visible::Line(line) => (plain(Part::Line, frame.line_color(plan, line, [x, y])), 1.0),
         Visible::Triangle(number) => {
             // The pixel is shaded alone, with the lights of its tile.

@@ -15,6 +15,7 @@ use super::texels::{OfFirst, PlacedTexture, TexelScratch};
 use super::triangle_attributes::TriangleAttributes;
 use crate::lights::{Batch, LightTerm, load, set, store};
 use crate::plan::tile::TileLight;
+use crate::screen::background::Background;
 use crate::screen::clipped_weights::ClippedWeights;
 use crate::screen::coverage::Triangle;
 use crate::screen::perspective::{between, weighed};
@@ -48,6 +49,25 @@ impl Canvas<'_> {
     pub(crate) fn fill(&mut self, at: usize, color: [u8; 4]) {
         for row in self.pixels[at..].chunks_mut(self.stride).take(ROW) {
             row[..ROW].fill(color);
+        }
+    }
+
+    /// Fills a block with what the picture shows behind all surfaces; `corner` is its upper left
+    /// pixel, and `at` the index of it.
+    #[inline(always)]
+    pub(crate) fn fill_behind(&mut self, at: usize, corner: [i32; 2], background: Background<'_>) {
+        match background.even() {
+            Some(color) => self.fill(at, color.opaque()),
+            None => self.fill_panorama(at, corner, background),
+        }
+    }
+
+    #[inline(never)]
+    fn fill_panorama(&mut self, at: usize, corner: [i32; 2], background: Background<'_>) {
+        for (row, y) in self.pixels[at..].chunks_mut(self.stride).take(ROW).zip(corner[1]..) {
+            for (pixel, x) in row[..ROW].iter_mut().zip(corner[0]..) {
+                *pixel = background.at([x, y]);
+            }
         }
     }
 

@@ -1,7 +1,6 @@
 //! Occlusion of the sky: the part of it that each point sees.
 //!
-//! Directions are sampled around the normal, in proportion to their cosine, and rays look for
-//! surfaces in them. The light of the whole sky is known exactly, so it is multiplied by the
+//! Directions are sampled around the normal, and rays look for surfaces in them. The light of the whole sky is known exactly, so it is multiplied by the
 //! fraction of the samples' light that arrives. With one colour this is ambient occlusion.
 //!
 //! Zhukov, Iones and Kronin, "An Ambient Light Illumination Model", 1998; Landis,
@@ -22,7 +21,7 @@ use crate::simd::Bits;
 
 /// Adds the light of the sky at every position of a batch.
 pub(super) fn add_sky<T: ShadingNumber>(
-    (tracer, sky): (&Tracer<'_>, Sky),
+    (tracer, sky): (&Tracer<'_>, Sky<'_>),
     scratch: &mut RayScratch,
     term: &LightTerm<T>,
     level: Level,
@@ -38,15 +37,18 @@ pub(super) fn add_sky<T: ShadingNumber>(
         skies[i] = tracer.sky_above(&sky, scratch.origins.point(i), normal);
     }
     let mut samples: [Option<LightSample>; POINTS] = [None; POINTS];
+    let mut colors = [[0.0; 3]; POINTS];
     let (mut all, mut seen) = ([[0.0; 3]; POINTS], [[0.0; 3]; POINTS]);
     for number in 0..sky.samples {
         for i in Bits(reached) {
-            samples[i] = skies[i].map(|sky| sky.sample(number));
+            let sample = skies[i].map(|above| sky.sample(&above, number));
+            colors[i] = sample.map_or([0.0; 3], |(_, color)| color);
+            // Nothing is looked for where no light comes from.
+            samples[i] = sample.map(|(sample, _)| sample).filter(|_| colors[i] != [0.0; 3]);
         }
         let blocked = tracer.blocked(level, scratch, (&samples, false), reached);
         for i in Bits(reached) {
-            let Some(sample) = samples[i] else { continue };
-            let color = sky.color(sample.towards);
+            let color = colors[i];
             let is_seen = blocked >> i & 1 == 0;
             for channel in 0..3 {
                 all[i][channel] += color[channel];

@@ -20,8 +20,9 @@ use super::samples::{Kept, Samples};
 use super::shader::{Out, Shader};
 use crate::frame::FramePlan;
 use crate::raster::tile::Visibility;
+use crate::screen::background::Background;
 use crate::screen::coverage::PixelBox;
-use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE, TILE_SIDE, tiles_of};
+use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE, TILE_SIDE, pixel_of, tiles_of};
 use crate::simd::{BATCH, Bits};
 use marraztu_core::base::color::Color;
 use marraztu_core::base::image::Size;
@@ -55,10 +56,14 @@ pub(crate) struct Filled {
 }
 
 impl Filled {
-    /// Returns the blocks that are filled with this colour.
-    const fn with(self, Color([r, g, b]): Color) -> u64 {
-        let Color([own_r, own_g, own_b]) = self.color;
-        if own_r == r && own_g == g && own_b == b { self.blocks } else { 0 }
+    /// Returns the blocks that are filled with this background.
+    fn with(self, background: Background<'_>) -> u64 {
+        if background.even() == Some(self.color) { self.blocks } else { 0 }
+    }
+
+    /// Notes the blocks that show a background, if it is the same everywhere.
+    fn new(background: Background<'_>, blocks: u64) -> Self {
+        background.even().map_or_else(Self::default, |color| Self { color, blocks })
     }
 }
 
@@ -113,6 +118,23 @@ const fn corner_in_tile(block: usize) -> [usize; 2] {
     [block % BLOCKS * ROW, block / BLOCKS * ROW]
 }
 
+/// Adds the background to the sums of a block of a tile, for a number of samples.
+fn add_background(
+    sums: &mut Sums,
+    background: Background<'_>,
+    (block, bounds): (usize, PixelBox),
+    samples: i32,
+) {
+    if let Some(color) = background.even() {
+        return sums.add_everywhere(color.opaque(), samples);
+    }
+    let [x, y] = corner_in_tile(block).map(|at| i32::try_from(at).expect("in the tile"));
+    for place in (0..BLOCK_PIXELS).filter(|_| samples > 0) {
+        let pixel = pixel_of([bounds.left + x, bounds.top + y], place);
+        sums.add(place, background.at(pixel), samples);
+    }
+}
+
 /// Draws one tile after another. It is aligned so painters never share a cache line.
 #[derive(Debug)]
 #[repr(align(128))]
@@ -146,11 +168,11 @@ impl<T: PathNumber> Painter<T> {
         band: &Mutex<Band<'_>>,
     ) {
         let ShadingContext { plan, .. } = *context;
-        let (size, background) = (plan.size, plan.background);
+        let (size, background) = (plan.size, plan.behind());
         let bounds = bounds_of(tile, size);
         // An empty tile costs a fill at most, and no store if it holds the background already.
         if !self.see(context, tile, bounds) {
-            return Self::fill(tile, size, background, &mut locked(band));
+            return Self::fill((tile, bounds), size, background, &mut locked(band));
         }
         // The direct path needs a whole tile with little work left, and a free band.
         let whole = (bounds.width(), bounds.height()) == (TILE, TILE);
@@ -166,7 +188,7 @@ impl<T: PathNumber> Painter<T> {
             let mut canvas = Canvas { pixels: &mut pixels[columns.start..], stride: size.width };
             let blocks = std::mem::take(&mut filled[column]).with(background);
             let blocks = self.blocks(context, bounds, &mut canvas, (blocks, true));
-            filled[column] = Filled { color: background, blocks };
+            filled[column] = Filled::new(background, blocks);
             return;
         }
         // The usual path: shade into the buffer without a lock, then copy the changed blocks.
@@ -178,7 +200,7 @@ impl<T: PathNumber> Painter<T> {
         let mut band = locked(band);
         // Blocks that showed only background before and still do are not copied.
         self.copy(tile, size, !(before & blocks), &mut band);
-        band.filled[column] = Filled { color: background, blocks };
+        band.filled[column] = Filled::new(background, blocks);
     }
 
     /// Finds the visible primitives of a tile. Returns whether there may be any.
@@ -215,7 +237,8 @@ impl<T: PathNumber> Painter<T> {
     ) -> u64 {
         let layered = self.layered.layers.touched();
         let whole = self.visibility.full_blocks();
-        let background = u32::from_le_bytes(context.plan.background.opaque());
+        let background = context.plan.behind();
+        let even = background.even().map(|color| u32::from_le_bytes(color.opaque()));
         // A row longer than a block, because runs of equal pixels are filled a row at a time.
         let mut colors = [0; BLOCK_PIXELS + ROW];
         // Faces without a known colour are lit first, for the whole tile in few batches.
@@ -228,7 +251,7 @@ impl<T: PathNumber> Painter<T> {
             let at = canvas.offset(corner_in_tile(block));
             // The colour to fill in around the visible primitives.
             let is_filled = filled >> block & 1 != 0;
-            let fill = (!(is_filled && straight)).then_some(context.plan.background);
+            let fill = (!(is_filled && straight)).then_some(background);
             let mut shows = true;
             // From the most special case to the most common one: layers, full blocks, then blocks
             // to be shaded.
@@ -252,7 +275,9 @@ impl<T: PathNumber> Painter<T> {
                     let runs = (visibility, self.shader.runs[block]);
                     let faces = context.faces;
                     // If the colours of all faces in the block are known, a look-up is enough.
-                    if faces.is_some_and(|all| all.of_block(runs, background, &mut colors)) {
+                    if let Some((faces, even)) = faces.zip(even)
+                        && faces.of_block(runs, even, &mut colors)
+                    {
                         canvas.put(at, &colors[..BLOCK_PIXELS]);
                         self.shader.path_pixels.faces += BLOCK_PIXELS as u64;
                         visibility.iter().any(|word| *word != 0)
@@ -263,7 +288,7 @@ impl<T: PathNumber> Painter<T> {
             } else {
                 // A block filled by an earlier frame needs no store: the picture keeps it.
                 if !is_filled {
-                    canvas.fill(at, context.plan.background.opaque());
+                    canvas.fill_behind(at, self.visibility.corner(block), background);
                 }
                 shows = false;
             }
@@ -302,7 +327,7 @@ impl<T: PathNumber> Painter<T> {
         context: &ShadingContext<'_, T>,
         (block, corner): (usize, [i32; 2]),
         (canvas, at): (&mut Canvas<'_>, usize),
-        fill: Option<Color>,
+        fill: Option<Background<'_>>,
     ) -> bool {
         let Self { shader, visibility, samples, .. } = self;
         let count = context.frame.sample_positions().count();
@@ -398,15 +423,16 @@ impl<T: PathNumber> Painter<T> {
         band: &Mutex<Band<'_>>,
     ) {
         let mut of = of.lock();
-        let FramePlan { size, samples, background, .. } = *context.plan;
+        let FramePlan { size, samples, .. } = *context.plan;
+        let (background, bounds) = (context.plan.behind(), bounds_of(tile, size));
         let TilePasses { background: everywhere, blocks } = &mut *of;
         if blocks.is_empty() {
-            return Self::fill(tile, size, background, &mut locked(band));
+            return Self::fill((tile, bounds), size, background, &mut locked(band));
         }
         let mut canvas = Canvas { pixels: &mut self.pixels, stride: TILE_SIDE };
         for (block, BlockPasses { sums, background: own, .. }) in blocks.iter_mut().enumerate() {
             // Passes that showed only background are added here, together.
-            sums.add_everywhere(background.opaque(), *everywhere + *own);
+            add_background(sums, background, (block, bounds), *everywhere + *own);
             let at = canvas.offset(corner_in_tile(block));
             canvas.put(at, &sums.means(samples.count().ilog2()));
         }
@@ -433,13 +459,27 @@ impl<T: PathNumber> Painter<T> {
         }
     }
 
-    /// Fills a tile with a colour, unless it already holds this colour.
-    fn fill(tile: usize, size: Size, color: Color, band: &mut Band<'_>) {
+    /// Fills a tile with the background, unless it already holds it.
+    fn fill(
+        (tile, bounds): (usize, PixelBox),
+        size: Size,
+        background: Background<'_>,
+        band: &mut Band<'_>,
+    ) {
         let (column, columns) = Self::columns(tile, size);
-        if band.filled[column].with(color) != u64::MAX {
-            band.filled[column] = Filled { color, blocks: u64::MAX };
-            for row in band.pixels.chunks_mut(size.width) {
-                row[columns.clone()].fill(color.opaque());
+        if band.filled[column].with(background) == u64::MAX {
+            return;
+        }
+        band.filled[column] = Filled::new(background, u64::MAX);
+        for (row, y) in band.pixels.chunks_mut(size.width).zip(bounds.top..) {
+            let row = &mut row[columns.clone()];
+            match background.even() {
+                Some(color) => row.fill(color.opaque()),
+                None => {
+                    row.iter_mut()
+                        .zip(bounds.left..)
+                        .for_each(|(to, x)| *to = background.at([x, y]));
+                }
             }
         }
     }

@@ -146,7 +146,9 @@ pub(super) fn add_other<T>(
         Visible::Line(line) => {
             context.frame.line_color(context.plan, line, pixel_of(corner, place))
         }
-        Visible::Background | Visible::Triangle(_) => context.plan.background.opaque(),
+        Visible::Background | Visible::Triangle(_) => {
+            context.plan.behind().at(pixel_of(corner, place))
+        }
     };
     sums.add(place, color, share);
 }

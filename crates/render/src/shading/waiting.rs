@@ -16,18 +16,18 @@ use super::runs::{Runs, Shown};
 use super::shader::{Out, Shader, Waiting};
 use super::tiny::MANY;
 use crate::raster::visibility_buffer::{Visible, seen};
+use crate::screen::background::Background;
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, pixel_of};
 use crate::simd::Bits;
 use crate::simd::gather::most_gathered;
-use marraztu_core::base::color::Color;
 
 /// The number of triangles above which a block is coloured separately.
 const MANY_TRIANGLES: usize = 24;
 
 impl<T: PathNumber> Shader<T> {
     /// Colours a block with the upper left pixel `corner` into a tile, starting at index `at`: at
-    /// the latest when [`Shader::finish_waiting`] is called. Background pixels get the colour
-    /// `fill`; without one, they are left unchanged. Returns whether any pixel shows more than the
+    /// the latest when [`Shader::finish_waiting`] is called. Background pixels show `fill`; without
+    /// one, they are left unchanged. Returns whether any pixel shows more than the
     /// background.
     pub(crate) fn block_later(
         &mut self,
@@ -35,7 +35,7 @@ impl<T: PathNumber> Shader<T> {
         visibility: &[u64; BLOCK_PIXELS],
         corner: [i32; 2],
         (canvas, at): (&mut Canvas<'_>, usize),
-        fill: Option<Color>,
+        fill: Option<Background<'_>>,
     ) -> bool {
         let runs = Runs::of(context.level, visibility);
         // Three ways to wait: with tiny triangles, with the blocks already waiting, or as the first
@@ -165,13 +165,13 @@ fn put_others<T>(
     (visibility, corner): (&[u64; BLOCK_PIXELS], [i32; 2]),
     shown: Shown,
     (canvas, at): (&mut Canvas<'_>, usize),
-    fill: Option<Color>,
+    fill: Option<Background<'_>>,
 ) {
     // The whole block is filled; its triangles are stored over the background afterwards.
-    if let Some(color) = fill
+    if let Some(background) = fill
         && (shown.triangles | shown.lines) != u64::MAX
     {
-        canvas.fill(at, color.opaque());
+        canvas.fill_behind(at, corner, background);
     }
     // Lines are not lit, so their colours are final.
     for i in Bits(shown.lines) {

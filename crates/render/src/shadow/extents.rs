@@ -4,22 +4,41 @@ use glam::DVec3;
 
 use super::ball_light::{BallLight, LightSample, SeenBall};
 use super::sequence::{sample as sequence_sample, seed_of};
+use crate::frame::panorama::PlacedPanorama;
 
 /// A sky that surfaces hide from each other.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sky {
+pub(crate) struct Sky<'a> {
     /// The colours above the horizon and below it.
     pub(super) colors: [[f64; 3]; 2],
+    /// The panorama, in place of the colours.
+    pub(super) panorama: Option<&'a PlacedPanorama>,
     /// The number of the light.
     pub(super) light: u32,
     /// The number of samples at each point.
     pub(crate) samples: u32,
 }
 
-impl Sky {
-    /// Returns the colour in a direction.
-    pub(crate) fn color(&self, towards: DVec3) -> [f64; 3] {
-        self.colors[usize::from(towards.y < 0.0)]
+impl Sky<'_> {
+    /// Returns a direction above a point, and the light from there with its weight.
+    ///
+    /// Directions are the more frequent, the closer they are to the normal, in proportion to the
+    /// cosine. Of a panorama, every second direction is the more frequent, the brighter it is, and
+    /// light is weighted by the density of both (Veach and Guibas, "Optimally Combining Sampling
+    /// Techniques for Monte Carlo Rendering", SIGGRAPH 1995).
+    pub(crate) fn sample(&self, above: &SkyAbove, number: u32) -> (LightSample, [f64; 3]) {
+        let Some(panorama) = self.panorama else {
+            let towards = above.around_normal(sequence_sample(number, above.seed));
+            return (sample_of(towards), self.colors[usize::from(towards.y < 0.0)]);
+        };
+        let towards = match number % 2 {
+            0 => above.around_normal(sequence_sample(number / 2, above.seed)),
+            _ => panorama.sampled(sequence_sample(number / 2, above.seed ^ BRIGHT)),
+        };
+        let cosine = above.normal.dot(towards).max(0.0) / std::f64::consts::PI;
+        let (light, density) = panorama.guided(towards);
+        let weight = if cosine > 0.0 { cosine / (cosine + density) } else { 0.0 };
+        (sample_of(towards), light.map(|it| it * weight))
     }
 
     /// Returns the sky above a point with a normal.
@@ -27,6 +46,14 @@ impl Sky {
         let (right, up) = normal.any_orthonormal_pair();
         SkyAbove { normal, right, up, seed: seed_of(point, self.light) }
     }
+}
+
+/// Tells the seeds of directions by brightness from those of directions by cosine.
+const BRIGHT: u32 = 0x5bd1_e995;
+
+/// Returns the sample of a direction.
+const fn sample_of(towards: DVec3) -> LightSample {
+    LightSample { towards, distance: f64::INFINITY, shift: DVec3::ZERO }
 }
 
 /// The sky above a point, whose directions are sampled.
@@ -39,15 +66,12 @@ pub(crate) struct SkyAbove {
 }
 
 impl SkyAbove {
-    /// Returns a direction: the more frequent, the closer it is to the normal, in proportion to the
-    /// cosine.
-    pub(crate) fn sample(&self, number: u32) -> LightSample {
-        let Self { normal, right, up, seed } = *self;
-        let [u, v] = sequence_sample(number, seed);
+    /// Returns a direction for two numbers from 0 to 1.
+    fn around_normal(&self, [u, v]: [f64; 2]) -> DVec3 {
+        let Self { normal, right, up, .. } = *self;
         let (sin, cos) = libm::sincos(v * std::f64::consts::TAU);
         let across = u.sqrt();
-        let towards = normal * (1.0 - u).sqrt() + right * (across * cos) + up * (across * sin);
-        LightSample { towards, distance: f64::INFINITY, shift: DVec3::ZERO }
+        normal * (1.0 - u).sqrt() + right * (across * cos) + up * (across * sin)
     }
 }
 

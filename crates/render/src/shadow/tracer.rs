@@ -54,7 +54,7 @@ pub(crate) struct Tracer<'a> {
     /// Each light, if it has an extent.
     soft: Vec<Option<SoftLight>>,
     /// Each light, if it is a sky.
-    skies: Vec<Option<Sky>>,
+    skies: Vec<Option<Sky<'a>>>,
     view_from_world: DMat3,
 }
 
@@ -139,7 +139,7 @@ impl<'a> Tracer<'a> {
     }
 
     /// Prepares the lights with an extent.
-    fn with_extents(mut self, plan: &FramePlan) -> Self {
+    fn with_extents(mut self, plan: &'a FramePlan) -> Self {
         let things = self.casters.iter().map(|placed| {
             let caster = placed.caster;
             let mut thing = Thing::new(&caster.model.mesh, caster.world_from_object)?;
@@ -155,7 +155,8 @@ impl<'a> Tracer<'a> {
             let own = &plan.lights[light as usize];
             let is_sky =
                 *source == Some(ShadowSource::Everywhere) && plan.shadows.radius(light) > 0.0;
-            is_sky.then_some(Sky { colors: [own.color, own.ground], light, samples })
+            let panorama = plan.panoramas.iter().find(|panorama| panorama.light == light);
+            is_sky.then_some(Sky { colors: [own.color, own.ground], panorama, light, samples })
         };
         self.skies = (0_u32..).zip(&plan.shadows.sources).map(sky).collect();
         let numbered = (0_u32..).zip(&self.lights);
@@ -177,12 +178,12 @@ impl<'a> Tracer<'a> {
 
     /// Returns a light, if it is a sky that surfaces hide.
     #[inline(always)]
-    pub(crate) fn sky(&self, light: u32) -> Option<Sky> {
+    pub(crate) fn sky(&self, light: u32) -> Option<Sky<'a>> {
         self.skies.get(light as usize).copied().flatten()
     }
 
     /// Returns the sky above a point with a normal in view space; `None` without a normal.
-    pub(crate) fn sky_above(&self, sky: &Sky, point: DVec3, normal: DVec3) -> Option<SkyAbove> {
+    pub(crate) fn sky_above(&self, sky: &Sky<'_>, point: DVec3, normal: DVec3) -> Option<SkyAbove> {
         // The view transform turns and scales evenly.
         let normal = unit(self.view_from_world.transpose() * normal)?;
         Some(sky.above(point, normal))

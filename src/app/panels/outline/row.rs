@@ -88,7 +88,9 @@ fn is_missing(scene: &Scene, item: ItemId) -> bool {
         ItemId::Camera(id) => {
             scene.cameras.get(id).is_some_and(|camera| camera.missing_file().is_some())
         }
-        ItemId::Light(_) => false,
+        ItemId::Light(id) => {
+            scene.lights.get(id).is_some_and(|light| light.missing_file().is_some())
+        }
     }
 }
 

@@ -4,21 +4,23 @@ use egui::{ComboBox, Slider, Ui};
 use glam::DVec3;
 
 use super::several::label;
-use super::{number_row, steps_ui};
+use super::{missing_ui, number_row, steps_ui};
 use crate::app::actions::{Action, Request, Requests, change};
 use crate::app::state::State;
 use crate::app::theme;
 use crate::app::widgets::color_picker::swatch;
-use crate::app::widgets::controls::{Switch, row, section};
+use crate::app::widgets::controls::{Switch, fact, row, section};
 use crate::app::widgets::gestures;
 use crate::app::widgets::mixed::is_mixed;
 use crate::app::widgets::number::{Number, vector};
-use marraztu_core::base::color;
+use crate::app::widgets::text::file_name;
+use marraztu_core::base::color::{self, Color};
 use marraztu_core::edit::{
     Change, Gesture, GesturePhase, Refusal, items, lights, motion, placement, several,
 };
 use marraztu_core::scene::{
-    Anchor, Attenuation, ItemId, Light, LightId, LightKind, Orbit, Scene, SpotOwner, Tracked, View,
+    Anchor, Attenuation, ItemId, Light, LightId, LightKind, Orbit, Scene, SkyPanorama, SpotOwner,
+    Tracked, View,
 };
 
 /// The light in the panel, and the other selected lights.
@@ -37,6 +39,7 @@ pub(crate) fn show(
     id: LightId,
 ) {
     let Some(light) = state.scene.lights.get(id) else { return };
+    missing_ui(ui, requests, light.missing_file().into_iter());
     let shown = Shown { state, others, id, light };
     section(ui, "Colour", true, |ui| shown.color_ui(ui, requests));
     if light.kind.numbers().next().is_some() {
@@ -150,18 +153,8 @@ impl Shown<'_> {
                 self.set(requests, "Colour", gesture, |light| light.color = color);
             }
         });
-        if let LightKind::Sky { ground } = light.kind {
-            row(ui, "Ground", |ui| {
-                if let Some((color, gesture)) =
-                    swatch(ui, "Ground", "The colour below the horizon", ground)
-                {
-                    self.set(requests, "Ground of", gesture, |light| {
-                        if let LightKind::Sky { ground } = &mut light.kind {
-                            *ground = color;
-                        }
-                    });
-                }
-            });
+        if let LightKind::Sky { ground, panorama } = &light.kind {
+            self.sky_ui(ui, requests, (*ground, panorama.as_ref()));
         }
         let hint = "The key from 0 to 9 that switches the light; each key belongs to one light";
         let number = Number::new("Key", hint).speed(0.05).range(0.0..=9999.0).whole();
@@ -169,6 +162,59 @@ impl Shown<'_> {
             // No two lights have the same key.
             let command = lights::set_slot(&state.scene, id, whole(to));
             change(requests, format!("Key of {}", light.name), gesture, command);
+        }
+    }
+
+    /// Shows what a sky shines with: the colour of the ground, or a panorama.
+    fn sky_ui(
+        &self,
+        ui: &mut Ui,
+        requests: &mut Requests,
+        (ground, panorama): (Color, Option<&SkyPanorama>),
+    ) {
+        if panorama.is_none() {
+            row(ui, "Ground", |ui| {
+                let hint = "The colour below the horizon";
+                if let Some((color, gesture)) = swatch(ui, "Ground", hint, ground) {
+                    self.set(requests, "Ground of", gesture, |light| {
+                        if let LightKind::Sky { ground, .. } = &mut light.kind {
+                            *ground = color;
+                        }
+                    });
+                }
+            });
+        }
+        let source = panorama.map(|it| &it.panorama.source);
+        let mixed = is_mixed(ui.ctx(), "Panorama");
+        let text = source.map_or_else(|| "none".to_owned(), |source| file_name(source));
+        fact(ui, "Panorama", if mixed { "mixed" } else { &text });
+        row(ui, "", |ui| {
+            let hint = "Chooses a picture of everything around: HDR, EXR, PNG or JPEG";
+            if ui.button("Choose...").on_hover_text(hint).clicked() {
+                requests.push(Request::Do(Action::ChoosePanorama));
+            }
+            let remove = egui::Button::new("Remove");
+            let hint = "Removes the panorama: the sky has two colours again";
+            let remove = ui.add_enabled(panorama.is_some(), remove).on_hover_text(hint);
+            if remove.on_disabled_hover_text(hint).clicked() {
+                self.set(requests, "Remove the panorama of", Gesture::Whole, |light| {
+                    if let LightKind::Sky { panorama, .. } = &mut light.kind {
+                        *panorama = None;
+                    }
+                });
+            }
+        });
+        let Some(SkyPanorama { turn, is_shown, .. }) = panorama else { return };
+        let hint = "Turns the panorama about the vertical, anticlockwise seen from above";
+        let number = Number::new("Turn", hint).speed(1.0).range(-360.0..=360.0).suffix(" deg");
+        if let Some((turn, gesture)) = number_row(ui, "Turn", number, *turn) {
+            self.set(requests, "Turn", gesture, |light| of_sky(light, |own| own.turn = turn));
+        }
+        let hint = "Shows the panorama behind everything; mirrors show it in any case";
+        let switch = Switch::new("Background", *is_shown).ui(ui);
+        if switch.on_hover_text(hint).clicked() {
+            let set = |light: &mut Light| of_sky(light, |own| own.is_shown = !is_shown);
+            self.set(requests, "Background of", Gesture::Whole, set);
         }
     }
 
@@ -293,6 +339,13 @@ impl Shown<'_> {
         set("Constant", now.constant, &|constant, own| Attenuation { constant, ..own });
         set("Linear", now.linear, &|linear, own| Attenuation { linear, ..own });
         set("Quadratic", now.quadratic, &|quadratic, own| Attenuation { quadratic, ..own });
+    }
+}
+
+/// Changes the panorama of a sky, if it has one.
+fn of_sky(light: &mut Light, change: impl FnOnce(&mut SkyPanorama)) {
+    if let LightKind::Sky { panorama: Some(own), .. } = &mut light.kind {
+        change(own);
     }
 }
 

@@ -1,0 +1,93 @@
+//! Loads panoramas.
+
+use std::path::Path;
+
+use image::{ColorType, ImageFormat};
+
+use super::error::{LoadError, shown};
+use super::progress::Progress;
+use super::read::read;
+use super::texture::{MOST_BYTES, decode_bytes, texture_endings};
+use marraztu_core::base::image::Size;
+use marraztu_core::scene::Panorama;
+
+/// The input formats of panoramas beyond those of textures: light in floats.
+pub(super) const FLOAT_FORMATS: [ImageFormat; 2] = [ImageFormat::Hdr, ImageFormat::OpenExr];
+
+/// Returns the file extensions of panoramas.
+pub fn panorama_endings() -> Vec<&'static str> {
+    let floats = FLOAT_FORMATS.iter().flat_map(|format| format.extensions_str()).copied();
+    floats.chain(texture_endings()).collect()
+}
+
+/// Loads a panorama: the light of Radiance HDR and OpenEXR files is linear, and that of other
+/// pictures stored.
+///
+/// # Errors
+/// If the file cannot be read, is not a picture, or is too large.
+pub fn load_panorama(path: &Path) -> Result<Panorama, LoadError> {
+    panorama_of(path, &read(path, MOST_BYTES, &Progress::new())?)
+}
+
+/// Decodes the panorama of a file.
+pub(super) fn panorama_of(path: &Path, content: &[u8]) -> Result<Panorama, LoadError> {
+    let (decoded, cut_off) = decode_bytes(path, content, Panorama::MOST_TEXELS, &FLOAT_FORMATS)?;
+    let damaged = || LoadError::file(&shown(path), "the picture is damaged");
+    if cut_off {
+        return Err(damaged());
+    }
+    let is_linear = matches!(decoded.color(), ColorType::Rgb32F | ColorType::Rgba32F);
+    let size = Size::new(decoded.width() as usize, decoded.height() as usize);
+    let light = decoded.into_rgb32f().into_raw();
+    let (texels, _) = light.as_chunks();
+    // An absolute path stays valid when the current folder changes.
+    let source = std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned());
+    Panorama::new(source, size, texels.to_vec(), is_linear).ok_or_else(damaged)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn loaded(name: &str, picture: &image::DynamicImage) -> Panorama {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join(name);
+        picture.save(&path).unwrap();
+        let panorama = load_panorama(&path).unwrap();
+        assert_eq!(panorama.source, path);
+        panorama
+    }
+
+    #[test]
+    fn floats_are_linear_and_bytes_are_stored() {
+        let mut light = image::Rgb32FImage::new(4, 2);
+        light.put_pixel(3, 0, image::Rgb([8.0, 0.5, 0.25]));
+        let light = image::DynamicImage::from(light);
+        let towards = glam::DVec3::new(1.0, 1.0, 1.0).normalize();
+        for name in ["sky.hdr", "sky.exr"] {
+            let panorama = loaded(name, &light);
+            assert_eq!(panorama.size(), Size::new(4, 2), "{name}");
+            // The texel of the upper right corner lies to the right, above and behind.
+            let [seen, ..] = panorama.light(true).seen(towards, 0.0);
+            assert!(seen > 3.0, "{name}: {seen}");
+        }
+        let bytes = image::RgbImage::from_pixel(4, 2, image::Rgb([51, 102, 255]));
+        let panorama = loaded("sky.png", &image::DynamicImage::from(bytes));
+        let seen = panorama.light(false).seen(towards, 0.0);
+        assert!((seen[0] - 0.2).abs() < 1e-6 && (seen[2] - 1.0).abs() < 1e-6, "{seen:?}");
+    }
+
+    #[test]
+    fn what_is_no_picture_is_one_error() {
+        let folder = tempfile::tempdir().unwrap();
+        for (name, content) in
+            [("a.hdr", &b"#?RADIANCE\n\n"[..]), ("b.exr", b"v/1\x01"), ("c", b"")]
+        {
+            let path = folder.path().join(name);
+            std::fs::write(&path, content).unwrap();
+            let error = load_panorama(&path).unwrap_err().to_string();
+            assert!(!error.contains('\n') && error.contains(name), "{error}");
+        }
+        assert!(load_panorama(&folder.path().join("none.hdr")).is_err());
+    }
+}

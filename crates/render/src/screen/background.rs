@@ -1,0 +1,76 @@
+//! What a picture shows behind all surfaces.
+
+use glam::DVec3;
+
+use super::coverage::SUBPIXELS;
+use crate::frame::panorama::PlacedPanorama;
+use crate::frame::{Eye, FramePlan};
+use marraztu_core::base::color::{Color, byte, encoded};
+
+/// What a picture shows where no surface is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Background<'a> {
+    /// The same everywhere.
+    Even(Color),
+    /// A panorama, in the picture of a plan.
+    Panorama(&'a PlacedPanorama, &'a FramePlan),
+}
+
+impl FramePlan {
+    /// Returns what the picture shows behind all surfaces.
+    #[inline]
+    pub(crate) fn behind(&self) -> Background<'_> {
+        match self.panoramas.iter().find(|panorama| panorama.is_shown) {
+            Some(panorama) => Background::Panorama(panorama, self),
+            None => Background::Even(self.background),
+        }
+    }
+
+    /// Returns the direction of view through a pixel, in view space.
+    fn direction_through(&self, [x, y]: [i32; 2]) -> DVec3 {
+        let m = &self.clip_from_view;
+        if self.eye == Eye::Parallel {
+            return DVec3::NEG_Z;
+        }
+        let within =
+            |at: i32, shift: i32| f64::from(at) + 0.5 + f64::from(shift) / f64::from(SUBPIXELS);
+        let right = 2.0 * within(x, self.shift[0]) / self.viewport.width - 1.0;
+        let up = 1.0 - 2.0 * within(y, self.shift[1]) / self.viewport.height;
+        // At the distance 1, w is 1.
+        let y = (up + m.z_axis.y) / m.y_axis.y;
+        let x = (right + m.z_axis.x - m.y_axis.x * y) / m.x_axis.x;
+        DVec3::new(x, y, -1.0)
+    }
+}
+
+impl Background<'_> {
+    /// Returns the colour, if it is the same everywhere.
+    #[inline]
+    pub(crate) const fn even(&self) -> Option<Color> {
+        match self {
+            Self::Even(color) => Some(*color),
+            Self::Panorama(..) => None,
+        }
+    }
+
+    /// Returns the colour at a pixel.
+    #[inline]
+    pub(crate) fn at(&self, pixel: [i32; 2]) -> [u8; 4] {
+        match self {
+            Self::Even(color) => color.opaque(),
+            Self::Panorama(panorama, plan) => panorama_at(panorama, plan, pixel),
+        }
+    }
+}
+
+fn panorama_at(panorama: &PlacedPanorama, plan: &FramePlan, pixel: [i32; 2]) -> [u8; 4] {
+    let towards = plan.direction_through(pixel);
+    // A pixel beside the axis is seen at a smaller angle, and in parallel at none.
+    let width = match plan.eye {
+        Eye::Point => plan.pixel_size() / towards.length_squared(),
+        Eye::Parallel => 0.0,
+    };
+    let light = panorama.seen(towards, width);
+    let [r, g, b] = if panorama.is_linear { light.map(encoded) } else { light }.map(byte);
+    [r, g, b, u8::MAX]
+}
