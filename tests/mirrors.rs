@@ -456,3 +456,58 @@ fn materials_of_files_ask_for_rays_by_illum_and_exports_keep_it() {
     assert!(status.unwrap().success());
     assert_eq!(optics(&load("b.obj")), expected);
 }
+
+#[test]
+fn a_reflection_map_takes_the_place_of_the_background_and_with_illum_8_of_everything() {
+    let folder = tempfile::tempdir().unwrap();
+    let faces = ["right", "left", "top", "bottom", "front", "back"];
+    let mut cube = String::new();
+    for (i, face) in (0_u8..).zip(faces) {
+        // Each face is darker below.
+        let picture = image::RgbImage::from_fn(16, 16, |_, y| {
+            image::Rgb([40 * i, if y < 8 { 250 } else { 100 }, 255 - 40 * i])
+        });
+        picture.save(folder.path().join(format!("{face}.png"))).unwrap();
+        cube += &format!("refl -type cube_{face} {face}.png\n");
+    }
+    let sky = image::RgbImage::from_fn(64, 32, |x, _| {
+        // The middle third lies along -Z, and the borders along +Z.
+        image::Rgb(if (16..48).contains(&x) { [0, 0, 200] } else { [200, 150, 0] })
+    });
+    sky.save(folder.path().join("sky.png")).unwrap();
+    let seen = |statements: &str, tilt: f64, is_hidden: bool| {
+        let mtl = format!("newmtl m\nKa 0 0 0\nKd 0 0 0\nKs 1 1 1\nNs 90\n{statements}");
+        std::fs::write(folder.path().join("a.mtl"), mtl).unwrap();
+        let obj = "mtllib a.mtl\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nusemtl m\nf 1 2 3 4\n";
+        let path = folder.path().join("a.obj");
+        std::fs::write(&path, obj).unwrap();
+        let loaded = io::load(&path, &LoadOptions::default(), &Progress::new()).unwrap();
+        let place = DMat4::from_rotation_x(tilt) * DMat4::from_scale(DVec3::splat(300.0));
+        let behind = DMat4::from_translation(DVec3::new(0.0, 0.0, 900.0))
+            * DMat4::from_scale(DVec3::splat(5000.0));
+        let mut models = vec![(loaded.model.into(), place)];
+        if is_hidden {
+            models.push((square(), behind));
+        }
+        let (mut scene, view) = scene(&models);
+        edit(&mut scene, ObjectId(10), |object| object.material = MaterialChoice::File);
+        light(&mut scene, Vec::new());
+        let view = View { marks: false, ..view };
+        let [r, g, b, _] = draw(&scene, &view, &Settings::default(), 64).pixel(32, 32);
+        ([r, g, b], loaded.findings)
+    };
+    let near = |got: [u8; 3], want: [u8; 3]| got.iter().zip(want).all(|(a, b)| a.abs_diff(b) < 12);
+    // The mirror faces +Z: the front of the cube, a little above or below its middle.
+    let (above, findings) = seen(&format!("illum 3\n{cube}"), -0.1, false);
+    assert!(near(above, [160, 250, 95]), "{above:?} {findings:?}");
+    assert!(near(seen(&format!("illum 3\n{cube}"), 0.1, false).0, [160, 100, 95]));
+    assert!(near(seen("illum 3\nrefl -type sphere sky.png\n", 0.0, false).0, [200, 150, 0]));
+    // An object hides it from rays, and illum 8 casts none.
+    let (black, findings) = seen(&format!("illum 3\n{cube}"), -0.1, true);
+    assert!(near(black, [0, 0, 0]), "{black:?} {findings:?}");
+    assert!(near(seen(&format!("illum 8\n{cube}"), -0.1, true).0, [160, 250, 95]));
+    // Without a picture, or with one that is missing, nothing changes.
+    let (blue, findings) = seen("illum 3\nrefl gone.png\n", 0.0, false);
+    assert!(near(blue, [0, 0, 179]) && findings.len() == 1, "{blue:?} {findings:?}");
+    assert!(near(seen("illum 8\n", 0.0, false).0, [0, 0, 0]));
+}

@@ -216,6 +216,7 @@ impl Copied {
             unlit: false,
             multiplies_colors: true,
             undrawn: BTreeMap::new(),
+            environment: None,
             undrawn_maps: Vec::new(),
         };
         let options = LoadOptions { crease, ..LoadOptions::default() };

@@ -197,6 +197,7 @@ pub(crate) fn mapped(rng: &mut Rng) -> Shared<Model> {
         unlit: rng.percent(10),
         multiplies_colors: true,
         undrawn: Undrawn::new(),
+        environment: None,
         undrawn_maps: Vec::new(),
     };
     model("mapped", source, vec![file])

@@ -200,6 +200,9 @@ kinds! {
          it as heights",
         "# bump maps (the first: \"@\") show normals and are read as normal maps; --bump-maps \
          heights reads them as heights";
+    DisplacementIsBump [Joined]:
+        "material \"@\": disp moves no vertices, and is drawn as a bump map",
+        "# materials: disp moves no vertices, and is drawn as a bump map";
     MendedEmission [Joined]:
         "material \"@\": map_Ke without Ke; Ke is taken as 1",
         "# materials: map_Ke without Ke; Ke is taken as 1";
@@ -216,8 +219,8 @@ kinds! {
         "material \"@\" is a metal of Blender: Ka is its metalness, and Ks gets the colour of Kd",
         "# materials are metals of Blender: Ka is their metalness, and Ks gets the colour of Kd";
     Illumination [Joined]:
-        "material \"@\": illum is not a whole number from 0 to 7: it is drawn as 2",
-        "# materials: illum is not a whole number from 0 to 7: it is drawn as 2";
+        "material \"@\": illum is not a whole number from 0 to 9: it is drawn as 2",
+        "# materials: illum is not a whole number from 0 to 9: it is drawn as 2";
     MendedRange [Joined]:
         "material \"@\": a value is outside 0 to 1 and is clamped",
         "# values of materials are outside 0 to 1 and are clamped";

@@ -8,7 +8,8 @@ use super::error::{LoadError, shown};
 use super::progress::Progress;
 use super::read::read;
 use super::texture::{MOST_BYTES, decode_bytes, texture_endings};
-use marraztu_core::base::image::Size;
+use marraztu_core::base::Shared;
+use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::Panorama;
 
 /// The input formats of panoramas beyond those of textures: light in floats.
@@ -43,6 +44,45 @@ pub(super) fn panorama_of(path: &Path, content: &[u8]) -> Result<Panorama, LoadE
     // An absolute path stays valid when the current folder changes.
     let source = std::path::absolute(path).unwrap_or_else(|_empty| path.to_owned());
     Panorama::new(source, size, texels.to_vec(), is_linear).ok_or_else(damaged)
+}
+
+/// The faces of a cube in MTL files, in the order of [`panorama_of_cube`].
+pub(super) const CUBE: [&str; 6] =
+    ["cube_right", "cube_left", "cube_top", "cube_bottom", "cube_front", "cube_back"];
+
+/// The largest face of a cube that keeps its size.
+const LARGEST_FACE: usize = 2048;
+
+/// Converts the six pictures of a cube, seen from its middle, to a panorama: right is +X, top +Y
+/// and front +Z. Right, left, front and back stand upright; the upper edge of the top and the lower
+/// edge of the bottom touch the back.
+pub(super) fn panorama_of_cube(source: &Path, faces: &[Shared<Picture>]) -> Panorama {
+    let side = faces.iter().map(|face| face.size().height).max().unwrap_or(1).min(LARGEST_FACE);
+    let size = Size::new(4 * side, 2 * side);
+    let texels = (0..size.area()).map(|place| {
+        let [x, y, z] = Panorama::direction(size, place).to_array();
+        let most = x.abs().max(y.abs()).max(z.abs());
+        // The face, and the place to the right and up on it.
+        let (face, right, up) = match () {
+            () if x == most => (0, z, y),
+            () if -x == most => (1, -z, y),
+            () if y == most => (2, -x, -z),
+            () if -y == most => (3, -x, z),
+            () if z == most => (4, -x, y),
+            () => (5, x, y),
+        };
+        let Some(face) = faces.get(face) else { return [0.0; 3] };
+        let Size { width, height } = face.size();
+        let at = |part: f64, count: usize| {
+            let along = (part / most + 1.0) / 2.0 * count as f64;
+            (along.max(0.0) as usize).min(count - 1)
+        };
+        let [r, g, b, _] = face.pixel(at(right, width), height - 1 - at(up, height));
+        [r, g, b].map(|byte| f32::from(byte) / 255.0)
+    });
+    let texels = texels.collect();
+    let placeholder = || Panorama::placeholder(source.to_owned());
+    Panorama::new(source, size, texels, false).unwrap_or_else(placeholder)
 }
 
 #[cfg(test)]

@@ -45,7 +45,8 @@ pub use mesh::{
     Triangle, dvec3, newell, split_positions,
 };
 pub use model::{
-    BumpMaps, FileMaterial, LoadOptions, Model, Scale, Undrawn, UndrawnMap, UpAxis, Winding,
+    BumpMaps, Environment, FileMaterial, LoadOptions, Model, Scale, Undrawn, UndrawnMap, UpAxis,
+    Winding,
 };
 pub use object::{Object, PartLook, Sides, Spin, Surface};
 pub use optics::{Optics, Reflection, Transmission};

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Crease, Material, Mesh, SurfaceMaps, Texture, Wrap};
+use super::{Crease, Material, Mesh, Panorama, SurfaceMaps, Texture, Wrap};
 use crate::base::{Shared, color::Color};
 
 /// The content of a loaded file. Objects share it, and it never changes.
@@ -231,7 +231,9 @@ pub struct FileMaterial {
     pub multiplies_colors: bool,
     /// The numbers of further statements, such as `Pr` and `sharpness`, for exports.
     pub undrawn: Undrawn,
-    /// The maps that do not affect pictures, such as `map_Pr` and `refl`, for exports.
+    /// What the surface mirrors in place of the scene's background: `refl`.
+    pub environment: Option<Environment>,
+    /// The maps for exports alone, such as `map_Pr`; and `refl`.
     pub undrawn_maps: Vec<UndrawnMap>,
 }
 
@@ -247,12 +249,22 @@ impl FileMaterial {
             unlit: false,
             multiplies_colors: true,
             undrawn: Undrawn::new(),
+            environment: None,
             undrawn_maps: Vec::new(),
         }
     }
 }
 
-/// A map of a file's material that does not affect pictures. Its file is not read.
+/// The surroundings of a material: a reflection map.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Environment {
+    /// The picture of everything around. A cube of six pictures has become one.
+    pub panorama: Shared<Panorama>,
+    /// Whether nothing else is mirrored: `illum` 8 and 9.
+    pub is_alone: bool,
+}
+
+/// A map of a file's material that is passed on to exports as it is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UndrawnMap {
     /// The keyword of its statement.

@@ -6,8 +6,8 @@ use glam::{DMat3, DMat4, DVec3};
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Bounds, FileMaterial, MapKind, MaterialChoice, Model, PresetId, Shape, SurfaceMap, SurfaceMaps,
-    Texture, Tracked,
+    Bounds, Environment, FileMaterial, MapKind, MaterialChoice, Model, PresetId, Shape, SurfaceMap,
+    SurfaceMaps, Texture, Tracked,
 };
 use crate::base::math::{self, Axis};
 use crate::base::{Shared, color::Color};
@@ -255,6 +255,7 @@ impl Object {
                 || (self.texture.is_none() && file.is_none_or(|file| file.multiplies_colors)),
             texture: texture.filter(|_| self.surface != Surface::Material),
             maps: file.map(|file| &file.maps).filter(|_| self.surface != Surface::Material),
+            environment: file.and_then(|file| file.environment.as_ref()).filter(|_| of_file),
             of_file,
         }
     }
@@ -275,6 +276,8 @@ pub struct PartLook<'a> {
     multiplies_colors: bool,
     /// The maps to show, if any.
     maps: Option<&'a SurfaceMaps>,
+    /// What the part mirrors in place of the scene's background.
+    pub environment: Option<&'a Environment>,
     /// Whether the material is the file's. If so, its opacity map is used together with its `d`.
     of_file: bool,
 }

@@ -87,6 +87,11 @@ impl Panorama {
         self.texels.size
     }
 
+    /// Returns the direction to the middle of a texel of a panorama of this size, by its index.
+    pub fn direction(size: Size, place: usize) -> DVec3 {
+        Texels { size, light: Vec::new() }.direction(place)
+    }
+
     /// Returns the light in linear or in stored values. Stored values above 1 follow the curve of
     /// sRGB.
     pub fn light(&self, in_linear: bool) -> &PanoramaLight {

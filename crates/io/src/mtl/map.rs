@@ -16,6 +16,8 @@ pub(super) struct Map {
     /// The factor of `-bm`.
     pub(super) gain: f64,
     pub(super) tone: Tone,
+    /// The shape of a reflection map: `-type`.
+    pub(super) shape: Option<String>,
     /// Options that would change the picture but are ignored.
     pub(super) ignored: Vec<&'static str>,
     /// All options as in the file.
@@ -35,6 +37,7 @@ pub(super) fn map(rest: &[u8]) -> Option<Map> {
         scale: [1.0; 2],
         gain: 1.0,
         tone: Tone::default(),
+        shape: None,
         ignored: Vec::new(),
         options: String::new(),
     };
@@ -111,7 +114,11 @@ impl Map {
                 1
             }
             "-texres" => numbers(1).len(),
-            "-blendu" | "-blendv" | "-cc" | "-type" | "-colorspace" => 1,
+            "-type" => {
+                self.shape = following.first().map(|(_, word)| word.to_ascii_lowercase());
+                1
+            }
+            "-blendu" | "-blendv" | "-cc" | "-colorspace" => 1,
             _ => return None,
         })
     }
@@ -138,6 +145,7 @@ mod tests {
             scale: [1.0; 2],
             gain: 1.0,
             tone: Tone::default(),
+            shape: None,
             ignored: Vec::new(),
             options: String::new(),
         };

@@ -57,7 +57,7 @@ impl Statements {
             note(FindingKind::DiffuseBlack);
         }
         let emission = self.mended_emission(&mut note);
-        let is_known = |model: f64| (0.0..=7.0).contains(&model) && model.fract() == 0.0;
+        let is_known = |model: f64| (0.0..=9.0).contains(&model) && model.fract() == 0.0;
         if self.illumination.is_some_and(|model| !is_known(model)) {
             note(FindingKind::Illumination);
         }
@@ -80,6 +80,7 @@ impl Statements {
             unlit,
             multiplies_colors,
             undrawn,
+            environment: None,
             undrawn_maps,
         }
     }
@@ -88,6 +89,8 @@ impl Statements {
     fn optics(&self) -> Optics {
         let (reflection, transmits) = match self.illumination {
             Some(3.0 | 4.0) => (Reflection::Constant, false),
+            // Without rays: only a reflection map is mirrored.
+            Some(8.0 | 9.0) if !self.reflection_maps.is_empty() => (Reflection::Constant, false),
             Some(5.0) => (Reflection::Fresnel, false),
             Some(6.0) => (Reflection::Constant, true),
             Some(7.0) => (Reflection::Fresnel, true),

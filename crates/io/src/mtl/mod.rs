@@ -4,6 +4,7 @@
 //! used. Statements are therefore passed to tobj one by one ([`statement`]); if it rejects one, the
 //! others are unaffected.
 
+mod environment;
 mod map;
 mod mend;
 mod normal_map;
@@ -30,7 +31,8 @@ use super::texture::{Pictures, Read};
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::Picture;
 use marraztu_core::scene::{
-    BumpMaps, FileMaterial, MapKind, NONE, SurfaceMap, SurfaceMaps, Texture, UndrawnMap, Wrap,
+    BumpMaps, FileMaterial, MapKind, NONE, Panorama, SurfaceMap, SurfaceMaps, Texture, UndrawnMap,
+    Wrap,
 };
 
 /// The most texels of all textures of a model: 2 GB.
@@ -58,6 +60,8 @@ pub(super) struct Library<'a> {
     /// The files that `texels` includes.
     counted: BTreeSet<PathBuf>,
     texels: usize,
+    /// The reflection maps, by the paths of their pictures.
+    environments: BTreeMap<Vec<PathBuf>, Shared<Panorama>>,
     /// The paths of textures, by the folder of the MTL file and the name in it.
     found: BTreeMap<(PathBuf, String), Option<PathBuf>>,
     /// Textures by path and options: equal textures are shared.
@@ -93,6 +97,7 @@ impl<'a> Library<'a> {
             texels: 0,
             found: BTreeMap::new(),
             textures: BTreeMap::new(),
+            environments: BTreeMap::new(),
         }
     }
 
@@ -185,6 +190,7 @@ impl<'a> Library<'a> {
         }
         statements.unpack();
         statements.keep_one_relief();
+        statements.settle_displacement(findings);
         let mut read = |(line, map): &(u32, Map), kind: Option<MapKind>| {
             for option in &map.ignored {
                 findings.add(FindingKind::MapOption, option, Some(*line));
@@ -207,9 +213,10 @@ impl<'a> Library<'a> {
             line: statements.line,
             is_own: statements.is_own,
         });
+        let environment = self.environment(&statements, folders, findings);
         let undrawn_maps = self.undrawn_maps(&statements.undrawn_maps, folders);
         let material = statements.mended((texture, maps), findings);
-        self.materials.push(FileMaterial { undrawn_maps, ..material });
+        self.materials.push(FileMaterial { environment, undrawn_maps, ..material });
     }
 
     /// Reads a bump map that contains normals as a normal map, since Blender and others write it

@@ -32,6 +32,10 @@ pub(super) struct Statements {
     pub(super) map: Option<(u32, Map)>,
     /// The other maps.
     pub(super) maps: BTreeMap<MapKind, (u32, Map)>,
+    /// `disp`: heights.
+    pub(super) displacement: Option<(u32, Map)>,
+    /// The statements `refl`: one picture, or the six of a cube.
+    pub(super) reflection_maps: Vec<(u32, Map)>,
     pub(super) undrawn: Undrawn,
     /// The maps that are not drawn, with their keywords.
     pub(super) undrawn_maps: Vec<(String, Map)>,
@@ -97,7 +101,21 @@ impl Statements {
                 Some(map) => _ = self.maps.insert(kind, (line.number, map)),
                 None => note(FindingKind::MapUnnamed),
             },
-            _ if plain.starts_with(b"map_") || matches!(&*plain, b"disp" | b"decal" | b"refl") => {
+            b"disp" | b"map_disp" => match map(rest) {
+                Some(map) => {
+                    self.undrawn_maps.push((decode(keyword), map.clone()));
+                    self.displacement = Some((line.number, map));
+                }
+                None => note(FindingKind::MapUnnamed),
+            },
+            b"refl" | b"map_refl" => match map(rest) {
+                Some(map) => {
+                    self.undrawn_maps.push((decode(keyword), map.clone()));
+                    self.reflection_maps.push((line.number, map));
+                }
+                None => note(FindingKind::MapUnnamed),
+            },
+            _ if plain.starts_with(b"map_") || plain == b"decal" => {
                 note(FindingKind::MapUnused);
                 self.undrawn_maps.extend(map(rest).map(|map| (decode(keyword), map)));
             }
@@ -125,6 +143,17 @@ impl Statements {
         }
     }
 
+    /// Takes heights that would move vertices as a bump map, if there is no other relief.
+    pub(super) fn settle_displacement(&mut self, findings: &mut Findings) {
+        let Some((line, map)) = &self.displacement else { return };
+        if self.maps.contains_key(&MapKind::Bump) || self.maps.contains_key(&MapKind::Normal) {
+            findings.add(FindingKind::MapUnused, "disp", Some(*line));
+        } else {
+            findings.add(FindingKind::DisplacementIsBump, &self.name, Some(self.line));
+            self.maps.insert(MapKind::Bump, (*line, map.clone()));
+        }
+    }
+
     /// Removes the bump map if it is also the normal map. Some files, including our exports, name
     /// it twice for readers that know only one of the statements.
     pub(super) fn keep_one_relief(&mut self) {
@@ -140,7 +169,8 @@ pub(crate) fn map_names(bytes: &[u8]) -> Vec<String> {
     let of_line = |line: Line<'_>| {
         let (keyword, rest) = line.statement();
         let keyword = keyword.to_ascii_lowercase();
-        let is_map = keyword == b"map_kd" || kind_of(&keyword).is_some();
+        let is_map = matches!(&*keyword, b"map_kd" | b"refl" | b"map_refl" | b"disp")
+            || kind_of(&keyword).is_some();
         if is_map { map(rest).map(|map| map.name) } else { None }
     };
     Lines::new(bytes).filter_map(of_line).collect()

@@ -3,6 +3,7 @@
 
 use std::hash::{Hash, Hasher};
 
+use super::panorama::PlacedPanorama;
 use marraztu_core::base::Shared;
 use marraztu_core::scene::{Reflection, Texture};
 
@@ -38,6 +39,8 @@ pub(crate) struct SurfaceRays {
     pub(crate) map: Option<Shared<Texture>>,
     /// Whether the surface is closed. Light passes through an open one unbent.
     pub(crate) is_closed: bool,
+    /// What is mirrored in place of the background, and whether nothing else is.
+    pub(crate) environment: Option<(PlacedPanorama, bool)>,
 }
 
 impl SurfaceRays {
@@ -166,7 +169,11 @@ impl Extras {
     /// identity: comparing pixels would cost more than drawing.
     pub(crate) fn identity(&self) -> impl PartialEq + use<> {
         let Self { emission, ambient, specular, exponent, bump, rays } = self;
-        let rays = rays.as_ref().map(|it| (it.numbers().map(f64::to_bits), address(&it.map)));
+        let rays = rays.as_ref().map(|it| {
+            let around = it.environment.as_ref();
+            let around = around.map(|(panorama, is_alone)| (panorama.address(), *is_alone));
+            (it.numbers().map(f64::to_bits), address(&it.map), around)
+        });
         let glow = |glow: &Option<Glow>| {
             glow.as_ref().map(|glow| (glow.color.map(f64::to_bits), address(&glow.map)))
         };

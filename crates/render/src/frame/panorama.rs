@@ -49,6 +49,11 @@ impl PlacedPanorama {
         }
     }
 
+    /// Returns the address of the picture, which tells it from others that are alive.
+    pub(crate) fn address(&self) -> usize {
+        Shared::address(&self.panorama)
+    }
+
     fn light(&self) -> &PanoramaLight {
         self.panorama.light(self.is_linear)
     }

@@ -75,6 +75,8 @@ pub(crate) struct Caster {
 pub(crate) struct CasterPart {
     /// The textures with holes for light, if there are any.
     pub(crate) holes: Option<Holes>,
+    /// The fraction of light that passes through each of its surfaces, if any does.
+    pub(crate) filter: Option<[f64; 3]>,
 }
 
 /// The holes of a part: light passes if the product of all three opacities is below one half.
@@ -88,7 +90,19 @@ pub(crate) struct Holes {
     pub(crate) opacity: f64,
 }
 
+impl CasterPart {
+    /// Returns whether it stops all light.
+    fn is_solid(&self) -> bool {
+        self.holes.is_none() && self.filter.is_none()
+    }
+}
+
 impl Caster {
+    /// Returns whether light passes through any of its parts.
+    pub(crate) fn filters(&self) -> bool {
+        self.parts.iter().flatten().any(|part| part.filter.is_some())
+    }
+
     /// Returns the part of a triangle, if it is drawn.
     #[inline(always)]
     pub(crate) fn part_of(&self, triangle: u32) -> Option<&CasterPart> {
@@ -103,8 +117,7 @@ impl Caster {
     /// Returns whether all of its triangles are drawn and have no holes.
     pub(crate) fn is_solid(&self) -> bool {
         // A hidden part is not solid either, because the BVH holds its triangles.
-        let solid =
-            |part: &Option<CasterPart>| part.as_ref().is_some_and(|part| part.holes.is_none());
+        let solid = |part: &Option<CasterPart>| part.as_ref().is_some_and(|part| part.is_solid());
         self.polygons.is_none() && self.parts.iter().all(solid)
     }
 
@@ -115,17 +128,26 @@ impl Caster {
         let key = |Holes { texture, map, opacity }: &Holes| {
             (address(texture), address(map), opacity.to_bits())
         };
-        let holes =
-            |part: &Option<CasterPart>| part.as_ref().map(|part| part.holes.as_ref().map(key));
+        let part_key = |part: &Option<CasterPart>| {
+            let bits = |filter: [f64; 3]| filter.map(f64::to_bits);
+            part.as_ref().map(|part| (part.holes.as_ref().map(key), part.filter.map(bits)))
+        };
         *item == other.item
             && Shared::same(model, &other.model)
             && same_bits(world_from_object, &other.world_from_object)
             && *polygons == other.polygons
-            && parts.iter().map(holes).eq(other.parts.iter().map(holes))
+            && parts.iter().map(part_key).eq(other.parts.iter().map(part_key))
     }
 }
 
 impl Shadows {
+    /// Makes all casters opaque for light.
+    pub(crate) fn block_light(&mut self) {
+        for part in self.casters.iter_mut().flat_map(|caster| &mut caster.parts).flatten() {
+            part.filter = None;
+        }
+    }
+
     /// Returns whether any light casts a shadow.
     pub(crate) fn are_cast(&self) -> bool {
         !self.casters.is_empty() && self.sources.iter().any(Option::is_some)
@@ -149,6 +171,11 @@ impl Shadows {
     /// Returns whether any light casts soft shadows.
     pub(crate) fn are_soft(&self) -> bool {
         self.are_cast() && (0_u32..).zip(&self.sources).any(|(light, _)| self.radius(light) > 0.0)
+    }
+
+    /// Returns whether single rays are traced: for lights with an extent, and through glass.
+    pub(crate) fn are_searched(&self) -> bool {
+        self.are_soft() || self.casters.iter().any(Caster::filters)
     }
 
     /// Returns whether any of these lights casts shadows.
@@ -175,12 +202,17 @@ impl Shadows {
 
     /// Computes what deciding shadows by a method reads of the meshes.
     pub(crate) fn prepare(&self, method: ShadowMethod) {
+        let is_searched = self.are_searched();
         for caster in &self.casters {
             let mesh = &caster.model.mesh;
             // Rays need the BVH; maps are rasterised in draw order.
             match method.map() {
                 None => _ = mesh.bvh(),
                 Some(_) => _ = mesh.draw_order(),
+            }
+            // Single rays ask for the corners of a triangle.
+            if is_searched {
+                _ = mesh.draw_order();
             }
             // Both look up the part of a triangle by its polygon.
             mesh.prepare(Derived::PolygonOf);

@@ -155,7 +155,13 @@ impl FramePlan {
             Effect::Mirrors => {
                 plan.for_each_rays(|rays| rays.reflection = Reflection::None);
             }
-            Effect::Refraction => plan.for_each_rays(|rays| rays.transmission = [0.0; 3]),
+            Effect::Refraction => {
+                plan.for_each_rays(|rays| rays.transmission = [0.0; 3]);
+                plan.shadows.block_light();
+                if let Some(around) = &mut plan.surroundings {
+                    around.shadows.block_light();
+                }
+            }
             // Exposure is a factor of the lights and costs nothing.
             Effect::Exposure => return None,
             Effect::LinearLight => plan.variants = plan.variants.in_stored_values(),

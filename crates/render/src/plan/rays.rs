@@ -6,30 +6,48 @@ use super::shadows::light_samples;
 use super::uses::Notes;
 use crate::frame::FramePlan;
 use crate::frame::extras::SurfaceRays;
+use crate::frame::panorama::PlacedPanorama;
 use crate::lights::PhongMaterial;
 use marraztu_core::accuracy::{Bounces, LightAt, Samples, Settings};
-use marraztu_core::scene::{MapKind, Object, Optics, PartLook, Reflection, Surface, Transmission};
+use marraztu_core::scene::{
+    Environment, MapKind, Object, Optics, PartLook, Reflection, SkyPanorama, Surface, Transmission,
+};
 
 impl Planner<'_> {
     /// Rays show what the opacity of a part leaves, if its material says so: the part is then
     /// opaque, and its own colour is weaker.
     pub(super) fn settle_transmission(&self, object: &Object, look: &mut PartLook<'_>) {
-        let is_lit = object.surface != Surface::Texture && !look.unlit;
-        let material = &mut look.material;
-        let casts = is_lit && self.shot.settings.bounces != Bounces::None;
-        if casts && material.optics.transmission == Transmission::Opacity {
+        if look.material.optics.transmission != Transmission::Opacity {
+            return;
+        }
+        if let Some(filter) = self.filter(object, look) {
             let own = std::mem::replace(&mut look.opacity, 1.0);
-            material.optics.transmission = Transmission::Filter([1.0 - own; 3]);
+            let material = &mut look.material;
+            material.optics.transmission = Transmission::Filter(filter);
             for color in [&mut material.ambient, &mut material.diffuse] {
                 *color = color.map(|x| x * own);
             }
         }
     }
 
+    /// Returns the fraction of light that passes through a part, if its material says so.
+    pub(super) fn filter(&self, object: &Object, look: &PartLook<'_>) -> Option<[f64; 3]> {
+        let is_lit = object.surface != Surface::Texture && !look.unlit;
+        if !is_lit || self.shot.settings.bounces == Bounces::None {
+            return None;
+        }
+        match look.material.optics.transmission {
+            Transmission::None => None,
+            Transmission::Opacity => Some([1.0 - share(look.opacity); 3]),
+            Transmission::Filter(filter) => Some(filter.map(share)),
+        }
+        .filter(|filter| *filter != [0.0; 3])
+    }
+
     /// Returns the rays of a lit part, if it mirrors or refracts.
     pub(super) fn rays(
         &self,
-        ground: &Ground<'_>,
+        (plan, ground): (&FramePlan, &Ground<'_>),
         (part, look): (u32, &PartLook<'_>),
         material: &PhongMaterial,
     ) -> Option<SurfaceRays> {
@@ -37,20 +55,25 @@ impl Planner<'_> {
             return None;
         }
         let Optics { reflection, transmission, index } = look.material.optics;
-        // Files and scripts may hold any number.
-        let share = |x: f64| if x.is_nan() { 0.0 } else { x.clamp(0.0, 1.0) };
         let specular = material.specular.map(share);
         let is_dark = reflection == Reflection::Constant && specular == [0.0; 3];
         let rays = SurfaceRays {
             reflection: if is_dark { Reflection::None } else { reflection },
             specular,
             transmission: match transmission {
+                // See `settle_transmission`.
                 Transmission::None | Transmission::Opacity => [0.0; 3],
                 Transmission::Filter(filter) => filter.map(share),
             },
             index: if Optics::INDICES.contains(&index) { index } else { 1.0 },
             map: mapped(ground, look, MapKind::Specular).map(|map| map.texture.clone()),
             is_closed: ground.object.model.mesh.is_part_closed(part),
+            environment: look.environment.map(|Environment { panorama, is_alone }| {
+                let sky = SkyPanorama { panorama: panorama.clone(), turn: 0.0, is_shown: false };
+                let is_linear = plan.variants.are_linear();
+                let view = plan.view_from_world;
+                (PlacedPanorama::new(&sky, (u32::MAX, [1.0; 3]), view, is_linear), *is_alone)
+            }),
         };
         (rays.reflects() || rays.transmits()).then_some(rays)
     }
@@ -80,4 +103,9 @@ impl Planner<'_> {
         Planner { shot: &shot, observer, shining, is_around: true }.add_objects(&mut around);
         into.plan.surroundings = Some(Box::new(around.plan));
     }
+}
+
+/// Returns a fraction from 0 to 1. Files and scripts may hold any number.
+fn share(x: f64) -> f64 {
+    if x.is_nan() { 0.0 } else { x.clamp(0.0, 1.0) }
 }

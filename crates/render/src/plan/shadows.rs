@@ -16,7 +16,7 @@ use super::uses::{Effect, EffectState, EffectUse, Thing};
 use crate::frame::FramePlan;
 use crate::frame::shadows::{Caster, CasterPart, Holes, Shadows};
 use marraztu_core::base::math;
-use marraztu_core::scene::{Fill, ItemId, MapKind, Object, ObjectId};
+use marraztu_core::scene::{Fill, ItemId, MapKind, Object, ObjectId, PartLook};
 
 /// The fewest samples of a light for each sample of a pixel, unless fewer are chosen.
 const LEAST_SAMPLES: u32 = 16;
@@ -69,7 +69,7 @@ impl Planner<'_> {
         }
         let parts = (0..mesh.parts().len())
             .map(|part| u32::try_from(part).expect("parts are numbered by 32 bits"))
-            .map(|part| caster_part(object, part))
+            .map(|part| self.caster_part(object, part))
             .collect();
         let polygons = self.polygons_of(id);
         let (item, model) = (ItemId::Object(id), object.model.clone());
@@ -109,13 +109,21 @@ fn note(shining: &Shining, on: Option<Thing>, state: EffectState) -> EffectUse {
     EffectUse { name, ..EffectUse::new(Effect::Shadows(shining.id), on, state) }
 }
 
-/// Returns the caster of a part of an object. `None` if the part is not drawn.
-fn caster_part(object: &Object, part: u32) -> Option<CasterPart> {
-    let look = object.part_look(part);
-    // Below one half, even opaque texels fail the alpha test.
-    if !object.shows_part(part) || look.opacity < 0.5 {
-        return None;
+impl Planner<'_> {
+    /// Returns the caster of a part of an object. `None` if the part is not drawn.
+    fn caster_part(&self, object: &Object, part: u32) -> Option<CasterPart> {
+        let look = object.part_look(part);
+        let filter = self.filter(object, &look);
+        // Below one half, even opaque texels fail the alpha test.
+        if !object.shows_part(part) || look.opacity < 0.5 && filter.is_none() {
+            return None;
+        }
+        Some(CasterPart { holes: holes(object, &look), filter })
     }
+}
+
+/// Returns the holes of a part of an object, if it has any.
+fn holes(object: &Object, look: &PartLook<'_>) -> Option<Holes> {
     let mapped = !object.model.mesh.uvs().is_empty();
     let texture = look.texture.filter(|_| mapped);
     let map = look.map(MapKind::Opacity).filter(|_| mapped).map(|map| &map.texture);
@@ -129,5 +137,5 @@ fn caster_part(object: &Object, part: u32) -> Option<CasterPart> {
         opacity: if look.opacity < 1.0 { look.opacity } else { 1.0 },
     };
     let is_pictured = texture.is_some() || map.is_some();
-    Some(CasterPart { holes: (is_pictured && !surface.passes_everywhere()).then(holes) })
+    (is_pictured && !surface.passes_everywhere()).then(holes)
 }

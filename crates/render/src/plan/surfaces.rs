@@ -130,7 +130,7 @@ impl Planner<'_> {
             mapped_ambient(into, ground, (look, texture), &material, &mut stages);
         shaded.material = material;
         self.map_highlights(ground, look, &mut shaded.extras, &mut stages);
-        shaded.extras.rays = self.rays(ground, (part, look), &material);
+        shaded.extras.rays = self.rays((&into.plan, ground), (part, look), &material);
         // Rays start along the normals of pixels.
         shaded.needs_positions = shaded.extras.rays.is_some()
             || into.plan.rules.positions(&Reading::of(stages.iter())).is_none();

@@ -22,9 +22,9 @@ use super::map_texels::TexelSource;
 use super::optics::{Media, Meeting, reflectance};
 use super::shader::Shader;
 use super::surroundings::{corners_of, normals_of};
-use crate::frame::Eye;
 use crate::frame::draw::{Draw, Pipeline};
 use crate::frame::extras::SurfaceRays;
+use crate::frame::{Eye, FramePlan};
 use crate::lights::Rows;
 use crate::rays::{Corners, Hit, OwnTriangles, Ray, RayStack};
 use crate::screen::sample_positions::MANY;
@@ -60,6 +60,9 @@ struct Branch {
     weight: [f64; 3],
     /// The index of the fragment.
     target: usize,
+    /// The pipeline of the last mirror with an environment of its own, and whether nothing else is
+    /// seen in it.
+    environment: Option<(u32, bool)>,
     cone: Cone,
     /// The number of mirrors and refractions on its way.
     bounces: u32,
@@ -98,6 +101,8 @@ struct Sender<'a> {
     is_front: bool,
     /// The map of Ks.
     mapped: [f64; 3],
+    /// Its pipeline in the plan of the surroundings.
+    pipeline: u32,
 }
 
 /// The most surfaces that a ray passes through unbent.
@@ -169,6 +174,7 @@ impl<T: ShadingNumber> Shader<T> {
             let normals = normals_of(draw, number).map(|normal| normal * side);
             let outside = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
             let outside = outside.normalize_or_zero();
+            let pipeline = around.surroundings.draw(thing).0.pipeline_of(number);
             for sample in 0..positions.count() {
                 let shift =
                     if positions.are_many() { positions.shift::<MANY>(sample) } else { [0; 2] };
@@ -201,11 +207,13 @@ impl<T: ShadingNumber> Shader<T> {
                         face,
                         is_front,
                         mapped: mapped[i],
+                        pipeline,
                     };
                     let first = Branch {
                         ray: Ray { from: DVec3::ZERO, towards, own: None },
                         weight: [share; 3],
                         target: i,
+                        environment: None,
                         cone,
                         bounces: 0,
                         layers: 0,
@@ -276,7 +284,10 @@ impl<T: ShadingNumber> Bounces<T> {
         let surroundings = &around.surroundings;
         let stops = |hit: &Hit| surroundings.stops(hit);
         dispatch!(around.context.level, simd => for branch in &*branches {
-            let hit = surroundings.things.nearest(simd, &branch.ray, &stops, stack);
+            let hit = match branch.environment {
+                Some((_, true)) => None,
+                _ => surroundings.things.nearest(simd, &branch.ray, &stops, stack),
+            };
             met.push(hit.map(|hit| {
                 let thing = &surroundings.things.all[hit.thing as usize];
                 branch.met(hit, thing.corners(hit.triangle))
@@ -336,7 +347,7 @@ impl<T: ShadingNumber> Bounces<T> {
         let most = around.context.mode().bounces;
         for (branch, met) in branches.iter().zip(&*met) {
             let Some(met) = met else {
-                let behind = plan.light_behind(branch.ray.towards, branch.cone.spread);
+                let behind = branch.light_behind(plan);
                 add(&mut sums[branch.target], branch.weight, behind);
                 continue;
             };
@@ -353,8 +364,8 @@ impl<T: ShadingNumber> Bounces<T> {
                 let layers = branch.layers + 1;
                 push(Branch { ray, weight: rest, cone, layers, ..*branch }, next);
             }
-            let pipeline = &plan.pipelines[draw.pipeline_of(triangle) as usize];
-            let Pipeline::Shaded(shaded) = pipeline else { continue };
+            let pipeline = draw.pipeline_of(triangle);
+            let Pipeline::Shaded(shaded) = &plan.pipelines[pipeline as usize] else { continue };
             let Some(rays) = shaded.extras.rays.as_ref().filter(|_| branch.bounces < most) else {
                 continue;
             };
@@ -368,6 +379,7 @@ impl<T: ShadingNumber> Bounces<T> {
                 face: met.point.face(),
                 is_front,
                 mapped: met.mapped,
+                pipeline,
             };
             let cone = branch.cone.after(met.point.hit.distance);
             send_on(&sender, &Branch { weight, cone, layers: 0, ..*branch }, next);
@@ -376,6 +388,21 @@ impl<T: ShadingNumber> Bounces<T> {
 }
 
 impl Branch {
+    /// Returns the light of the ray if it meets nothing.
+    fn light_behind(&self, plan: &FramePlan) -> [f64; 3] {
+        let (towards, width) = (self.ray.towards, self.cone.spread.abs());
+        let environment = self.environment.and_then(|(pipeline, _)| {
+            let Pipeline::Shaded(shaded) = plan.pipelines.get(pipeline as usize)? else {
+                return None;
+            };
+            shaded.extras.rays.as_ref()?.environment.as_ref()
+        });
+        match environment {
+            Some((panorama, _)) => panorama.seen(towards, width),
+            None => plan.light_behind(towards, width),
+        }
+    }
+
     /// Returns the point that it meets, not shaded yet.
     fn met(&self, hit: Hit, corners: Corners) -> Met {
         let width = self.cone.after(hit.distance).width;
@@ -420,17 +447,20 @@ fn send_on(it: &Sender<'_>, branch: &Branch, to: &mut Vec<Branch>) {
     let bend = curvature(&it.corners, it.draw, (it.own.first, it.is_front));
     let Cone { width, spread } = branch.cone;
     let from = it.position;
+    let environment = it.rays.environment.as_ref().map(|(_, is_alone)| (it.pipeline, *is_alone));
     let sent = |towards: DVec3, spread: f64, share: [f64; 3], media: Media| Branch {
         ray: Ray { from, towards, own: Some(it.own) },
         weight: std::array::from_fn(|i| branch.weight[i] * share[i]),
         cone: Cone { width, spread },
         bounces: branch.bounces + 1,
+        environment: None,
         media,
         ..*branch
     };
     if reflected != [0.0; 3] {
         let spread = spread + 2.0 * bend * width;
-        push(sent(meeting.mirrored(), spread, reflected, branch.media), to);
+        let mirrored = sent(meeting.mirrored(), spread, reflected, branch.media);
+        push(Branch { environment, ..mirrored }, to);
     }
     if let Some(refracted) = refracted.filter(|_| transmits) {
         let share = std::array::from_fn(|i| (1.0 - reflected[i]) * transmission[i]);

@@ -47,12 +47,16 @@ pub(super) fn add_sky<T: ShadingNumber>(
             samples[i] = sample.map(|(sample, _)| sample).filter(|_| colors[i] != [0.0; 3]);
         }
         let blocked = tracer.blocked(level, scratch, (&samples, false), reached);
+        let shares = tracer.filtered(level, scratch, &samples, reached & !blocked);
         for i in Bits(reached) {
             let color = colors[i];
-            let is_seen = blocked >> i & 1 == 0;
+            let share = match blocked >> i & 1 {
+                0 => shares.as_ref().map_or([1.0; 3], |shares| shares[i]),
+                _ => [0.0; 3],
+            };
             for channel in 0..3 {
                 all[i][channel] += color[channel];
-                seen[i][channel] += if is_seen { color[channel] } else { 0.0 };
+                seen[i][channel] += color[channel] * share[channel];
             }
         }
     }

@@ -25,6 +25,7 @@ use crate::shadow::map_face::{Reading, TAPS};
 use crate::shadow::rays::{Origins, RayScratch};
 use crate::shadow::shaft::POINTS;
 use crate::shadow::tracer::Tracer;
+use crate::shadow::tracer::filters::Shares;
 use crate::simd::{BATCH, Bits, Number};
 use marraztu_core::scene::dvec3;
 
@@ -88,6 +89,16 @@ impl<'a> BatchShadows<'a> {
         before.shaded & mask | shaded
     }
 
+    /// Returns the fraction of a light that passes through glass on its way to positions of a mask;
+    /// `None` if there is none.
+    fn filtered(&mut self, level: Level, light: DVec3, mask: u64) -> Option<Shares> {
+        if !self.tracer.has_filters() {
+            return None;
+        }
+        self.place();
+        self.tracer.filtered_from(level, self.scratch, light, mask)
+    }
+
     /// Adds the light of a stage at every position of a batch that it reaches.
     pub(crate) fn add_light<T: ShadingNumber>(
         &mut self,
@@ -142,6 +153,18 @@ impl<'a> BatchShadows<'a> {
             for axis in 0..3 {
                 batch.diffuse[axis][i] = before.0[axis][i];
                 batch.specular[axis][i] = before.1[axis][i];
+            }
+        }
+        let open = lit & !reading.occluded;
+        if let Some(shares) = self.filtered(level, light, open) {
+            for i in Bits(open) {
+                for (axis, share) in shares[i].into_iter().enumerate() {
+                    let share = T::from_f64(share);
+                    let (diffuse, specular) = (before.0[axis][i], before.1[axis][i]);
+                    batch.diffuse[axis][i] = diffuse + (batch.diffuse[axis][i] - diffuse) * share;
+                    batch.specular[axis][i] =
+                        specular + (batch.specular[axis][i] - specular) * share;
+                }
             }
         }
         for i in Bits(reading.partly) {

@@ -54,7 +54,17 @@ pub(super) fn add_soft_light<T: ShadingNumber>(
             true => tracer.blocked(level, scratch, (&samples, true), reached),
             false => 0,
         };
-        for i in Bits(reached & !blocked) {
+        let open = reached & !blocked;
+        if let Some(shares) = tracer.filtered(level, scratch, &samples, open) {
+            for i in Bits(open) {
+                for (axis, share) in shares[i].into_iter().enumerate() {
+                    let share = T::from_f64(share);
+                    batch.diffuse[axis][i] = batch.diffuse[axis][i] * share;
+                    batch.specular[axis][i] = batch.specular[axis][i] * share;
+                }
+            }
+        }
+        for i in Bits(open) {
             for axis in 0..3 {
                 diffuse[axis][i] = diffuse[axis][i] + batch.diffuse[axis][i];
                 specular[axis][i] = specular[axis][i] + batch.specular[axis][i];

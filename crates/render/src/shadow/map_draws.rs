@@ -248,8 +248,13 @@ fn draw(caster: &Caster, pipelines: &mut Vec<Pipeline>) -> Draw {
         pipelines.push(pipeline);
         u32::try_from(pipelines.len() - 1).expect("a scene has fewer parts")
     };
-    let part_pipelines: Vec<Option<u32>> =
-        caster.parts.iter().map(|part| part.as_ref().map(&mut pipeline)).collect();
+    // Maps know no colours: light passes through glass undimmed.
+    let is_opaque = |part: &&CasterPart| part.filter.is_none();
+    let part_pipelines: Vec<Option<u32>> = caster
+        .parts
+        .iter()
+        .map(|part| part.as_ref().filter(is_opaque).map(&mut pipeline))
+        .collect();
     Draw {
         item: caster.item,
         model: caster.model.clone(),

@@ -6,7 +6,7 @@ use super::patches::{Patch, find_patches};
 use super::prepared_block::PreparedBlock;
 use super::shaft::{POINTS, Shaft};
 use crate::accel::BvhChild;
-use crate::rays::{Frontier, RayStack};
+use crate::rays::{Frontier, OwnTriangles, Ray, RayStack};
 
 /// The origins of up to [`POINTS`] rays, in world space, all on one object.
 #[derive(Debug)]
@@ -46,6 +46,17 @@ impl Default for Origins {
 }
 
 impl Origins {
+    /// Returns the ray from a point in a direction.
+    pub(crate) fn ray(&self, i: usize, towards: DVec3) -> Ray {
+        let own = self.caster.map(|thing| OwnTriangles {
+            thing,
+            first: self.first[i],
+            end: self.end[i],
+            is_rounded: self.in_triangle && self.lifted >> i & 1 == 0,
+        });
+        Ray { from: self.point(i), towards, own }
+    }
+
     /// Begins a list of points on a caster.
     pub(crate) fn begin(&mut self, caster: Option<u32>, in_triangle: bool) {
         (self.caster, self.in_triangle, self.reach) = (caster, in_triangle, 0.0);

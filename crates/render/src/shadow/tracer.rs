@@ -1,5 +1,7 @@
 //! Traces packets of shadow rays through all casters of a frame.
 
+pub(crate) mod filters;
+
 use std::collections::BTreeMap;
 
 use crate::accel::Accelerated as _;
@@ -19,8 +21,8 @@ use super::shaft::{Around, POINTS, Shaft};
 use super::triangle::{Prepared, is_between, reaches_behind};
 use crate::accel::{BVH_BLOCK, Bvh, BvhBlock, BvhChild, BvhNode};
 use crate::frame::FramePlan;
-use crate::frame::shadows::{Caster, Holes, ShadowSource, Shadows};
-use crate::rays::{Corners, Ends, FLAT, Hit, OwnTriangles, Ray, Thing, Things};
+use crate::frame::shadows::{Caster, CasterPart, Holes, ShadowSource, Shadows};
+use crate::rays::{Corners, Ends, FLAT, Hit, Thing, Things};
 use crate::simd::{Bits, dispatch};
 use crate::texture::sample::{opacity_of, sample};
 use crate::texture::uv::uv;
@@ -49,12 +51,14 @@ pub(crate) struct Tracer<'a> {
     /// The cached shadows, if shadows are cached.
     known: Option<&'a KnownShadows>,
     filter: Filter,
-    /// The casters for single rays, if any light has an extent.
+    /// The casters for single rays, if any light has an extent or passes through a caster.
     things: Things<'a>,
     /// Each light, if it has an extent.
     soft: Vec<Option<SoftLight>>,
     /// Each light, if it is a sky.
     skies: Vec<Option<Sky<'a>>>,
+    /// Whether light passes through any caster.
+    filters: bool,
     view_from_world: DMat3,
 }
 
@@ -98,7 +102,7 @@ impl<'a> Tracer<'a> {
             numbered.map(|(index, placed)| (placed.caster.item, index)).collect();
         let of_draws = plan.draws.iter().map(|draw| of_items.get(&draw.item).copied()).collect();
         let tracer = Self { of_draws, ..tracer };
-        Some(if plan.shadows.are_soft() { tracer.with_extents(plan) } else { tracer })
+        Some(if plan.shadows.are_searched() { tracer.with_extents(plan) } else { tracer })
     }
 
     /// Returns the distance of the suns of a frame.
@@ -134,6 +138,8 @@ impl<'a> Tracer<'a> {
             things: Things::default(),
             soft: Vec::new(),
             skies: Vec::new(),
+            // Maps know no colours: light passes through glass undimmed.
+            filters: method.map().is_none() && shadows.casters.iter().any(Caster::filters),
             view_from_world: DMat3::IDENTITY,
         }
     }
@@ -228,13 +234,7 @@ impl<'a> Tracer<'a> {
         let mut blocked = 0;
         dispatch!(level, simd => for i in Bits(mask) {
             let Some(LightSample { towards, distance, .. }) = samples[i] else { continue };
-            let own = origins.caster.map(|thing| OwnTriangles {
-                thing,
-                first: origins.first[i],
-                end: origins.end[i],
-                is_rounded: origins.in_triangle && origins.lifted >> i & 1 == 0,
-            });
-            let ray = Ray { from: origins.point(i), towards, own };
+            let ray = origins.ray(i, towards);
             let is_blocked = if are_between {
                 self.things.stop_within(simd, (&ray, distance, frontier), &stops, single)
             } else {
@@ -515,6 +515,16 @@ impl<'a> Tracer<'a> {
     /// Returns whether a triangle of a caster blocks light at these barycentric coordinates.
     fn is_solid_at(&self, placed: &InPlace<'_>, triangle: u32, parts: DVec3) -> bool {
         let Some(part) = placed.caster.part_of(triangle) else { return false };
+        part.filter.is_none() && self.is_there(placed, (triangle, part), parts)
+    }
+
+    /// Returns whether a triangle of a part has no hole at these barycentric coordinates.
+    fn is_there(
+        &self,
+        placed: &InPlace<'_>,
+        (triangle, part): (u32, &CasterPart),
+        parts: DVec3,
+    ) -> bool {
         let Some(Holes { texture, map, opacity }) = &part.holes else { return true };
         let Some(uvs) = placed.caster.model.mesh.triangle_uvs(triangle) else { return true };
         let uvs = each(uvs, |[u, v]| [f64::from(u), f64::from(v)]);
