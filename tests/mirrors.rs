@@ -491,6 +491,9 @@ fn a_reflection_map_takes_the_place_of_the_background_and_with_illum_8_of_everyt
         }
         let (mut scene, view) = scene(&models);
         edit(&mut scene, ObjectId(10), |object| object.material = MaterialChoice::File);
+        if is_hidden {
+            edit(&mut scene, ObjectId(11), |object| object.sides = Sides::Two);
+        }
         light(&mut scene, Vec::new());
         let view = View { marks: false, ..view };
         let [r, g, b, _] = draw(&scene, &view, &Settings::default(), 64).pixel(32, 32);

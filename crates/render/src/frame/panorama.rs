@@ -38,6 +38,8 @@ impl PlacedPanorama {
         let turned = DMat3::from_mat4(view_from_world).transpose();
         let scale = turned.x_axis.length();
         let picture_from_world = sky.picture_from_world();
+        // Prepared here, because drawing runs in parallel.
+        sky.panorama.light(is_linear);
         Self {
             light,
             panorama: sky.panorama.clone(),

@@ -2,7 +2,7 @@
 
 use super::maps::mapped;
 use super::planning::{Ground, Planner, Planning};
-use super::shadows::light_samples;
+use super::shadows::{LEAST_OF_RAYS, light_samples};
 use super::uses::Notes;
 use crate::frame::FramePlan;
 use crate::frame::extras::SurfaceRays;
@@ -96,7 +96,7 @@ impl Planner<'_> {
         // A pixel has a ray for each of up to sixteen samples.
         if !plan.shadows.casters.is_empty() {
             let rays = into.plan.samples.count().min(Samples::Sixteen.count());
-            plan.shadows.samples = light_samples(&plan, rays);
+            plan.shadows.samples = light_samples(&plan, rays, LEAST_OF_RAYS);
         }
         let mut around = Planning::new(plan, Notes::default());
         let Self { observer, shining, .. } = self;

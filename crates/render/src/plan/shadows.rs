@@ -21,11 +21,14 @@ use marraztu_core::scene::{Fill, ItemId, MapKind, Object, ObjectId, PartLook};
 /// The fewest samples of a light for each sample of a pixel, unless fewer are chosen.
 const LEAST_SAMPLES: u32 = 16;
 
+/// The same for each ray of a pixel: mirrors and glass send on many.
+pub(super) const LEAST_OF_RAYS: u32 = 4;
+
 /// Returns the samples of a light for each of the points of a pixel that are lit one by one: they
-/// share those of the pixel.
-pub(super) fn light_samples(plan: &FramePlan, points: u32) -> u32 {
+/// share those of the pixel, and have at least `least`, unless fewer are chosen.
+pub(super) fn light_samples(plan: &FramePlan, points: u32, least: u32) -> u32 {
     let chosen = plan.variants.light_samples.count();
-    (chosen / points).max(chosen.min(LEAST_SAMPLES))
+    (chosen / points).max(chosen.min(least))
 }
 
 impl Planner<'_> {
@@ -40,7 +43,7 @@ impl Planner<'_> {
             let casters = objects.into_iter().filter_map(|(id, object)| self.caster(id, object));
             into.plan.shadows.casters = casters.collect();
             let points = if into.plan.lit_by_sample { into.plan.samples.count() } else { 1 };
-            into.plan.shadows.samples = light_samples(&into.plan, points);
+            into.plan.shadows.samples = light_samples(&into.plan, points, LEAST_SAMPLES);
         }
         if into.plan.shadows.casters.is_empty() {
             into.plan.shadows = Shadows::default();
