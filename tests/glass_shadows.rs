@@ -61,19 +61,16 @@ fn sun() -> LightKind {
 }
 
 /// The light on the paper below the glass, relative to that beside it. Glass between paper and
-/// observer would dim it once more, so the observer looks from behind the paper's edge.
+/// observer would dim it once more, so the observer is below the glass.
 fn shares(scene: &Scene, view: &View, settings: &Settings) -> [f64; 3] {
-    // The glass itself is invisible for the observer, since only the paper is shown.
-    let alone = View { only_selected: false, ..view.clone() };
     let mut seen = scene.clone();
-    // The observer is below the glass.
     let mut camera = seen.cameras.get(view.camera).unwrap().clone();
     let mut pose = *camera.pose.now();
     pose.eye = DVec3::new(0.0, 0.0, 60.0);
     camera.pose = Tracked::new(pose);
     let camera = marraztu_core::scene::Item::Camera(view.camera, Box::new(camera));
     marraztu_core::scene::Command::Replace(camera).apply(&mut seen).unwrap();
-    let picture = draw(&seen, &alone, settings, SIDE);
+    let picture = draw(&seen, view, settings, SIDE);
     let [dim, open] = [SIDE / 8, SIDE - 1 - SIDE / 8].map(|x| picture.pixel(x, SIDE / 2));
     std::array::from_fn(|i| f64::from(dim[i]) / f64::from(open[i]))
 }
@@ -142,6 +139,48 @@ fn a_pane_across_the_sky_filters_it() {
     // The observer sees the paper through the pane, too.
     let want = [0.25, 1.0, 0.0625].map(|share| 0.8 * 255.0 * share);
     assert!(are_near([r, g, b], want, 3.0), "{r} {g} {b}, {want:?}");
+}
+
+#[test]
+fn the_edge_between_two_triangles_of_a_pane_counts_once() {
+    let whole = (
+        square(),
+        DMat4::from_translation(DVec3::new(0.0, 0.0, 120.0))
+            * DMat4::from_scale(DVec3::splat(600.0)),
+    );
+    let (mut scene, view) = under(&[whole], Transmission::Filter(GREEN));
+    shine(&mut scene, sun(), 0.0);
+    let mut camera = scene.cameras.get(view.camera).unwrap().clone();
+    let mut pose = *camera.pose.now();
+    pose.eye = DVec3::new(0.0, 0.0, 60.0);
+    camera.pose = Tracked::new(pose);
+    let camera = marraztu_core::scene::Item::Camera(view.camera, Box::new(camera));
+    marraztu_core::scene::Command::Replace(camera).apply(&mut scene).unwrap();
+    let picture = draw(&scene, &view, &Settings::default(), 65);
+    // Both diagonals, of which one is an edge.
+    for i in 1..64 {
+        for x in [i, 64 - i] {
+            let [r, g, b, _] = picture.pixel(x, i).map(f64::from);
+            let want = GREEN.map(|share| 204.0 * share);
+            assert!(are_near([r, g, b], want, 1.01), "{x} {i}: {r} {g} {b}");
+        }
+    }
+}
+
+#[test]
+fn a_picture_on_glass_leaves_its_filter() {
+    let (mut scene, view) = under(&[pane(120.0)], Transmission::Opacity);
+    let texels = vec![[255, 255, 255, 255], [255, 255, 255, 0], [9, 9, 9, 255], [9, 9, 9, 255]];
+    let picture = marraztu_core::base::image::Picture::from_pixels(Size::new(2, 2), texels);
+    let texture = marraztu_core::scene::Texture::new("t.png", picture.unwrap());
+    edit(&mut scene, ObjectId(11), |object| {
+        object.opacity = 0.3;
+        object.texture = Some(texture.into());
+    });
+    shine(&mut scene, sun(), 0.0);
+    // The square has no texture coordinates, so it has no holes either.
+    let got = shares(&scene, &view, &Settings::default());
+    assert!(are_near(got, [0.7; 3], 0.01), "{got:?}");
 }
 
 #[test]

@@ -512,5 +512,19 @@ fn a_reflection_map_takes_the_place_of_the_background_and_with_illum_8_of_everyt
     // Without a picture, or with one that is missing, nothing changes.
     let (blue, findings) = seen("illum 3\nrefl gone.png\n", 0.0, false);
     assert!(near(blue, [0, 0, 179]) && findings.len() == 1, "{blue:?} {findings:?}");
-    assert!(near(seen("illum 8\n", 0.0, false).0, [0, 0, 0]));
+    for nothing in
+        ["illum 8\n", "illum 9\nrefl gone.png\n", "illum 8\nrefl -type cube_top top.png\n"]
+    {
+        assert!(near(seen(nothing, 0.0, false).0, [0, 0, 0]), "{nothing}");
+    }
+    // A mirror that leans back sees the top, the right, the left and the bottom. Faces may differ
+    // in size, and words be in capitals.
+    image::RgbImage::from_pixel(4, 8, image::Rgb([80, 5, 175]))
+        .save(folder.path().join("top.png"))
+        .unwrap();
+    let capitals = cube.replace("cube_top", "CUBE_TOP");
+    let (top, findings) = seen(&format!("illum 8\n{capitals}"), -0.7, false);
+    assert!(near(top, [80, 5, 175]), "{top:?} {findings:?}");
+    let (bottom, _) = seen(&format!("illum 8\n{cube}"), 0.7, false);
+    assert!(bottom[0].abs_diff(120) < 12, "{bottom:?}");
 }

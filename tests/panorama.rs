@@ -331,6 +331,67 @@ fn a_panorama_takes_the_place_of_all_lights_and_keeps_its_turn() {
 }
 
 #[test]
+fn a_sky_that_is_off_or_black_shows_nothing_and_several_add_up() {
+    let (mut scene, view) = scene(&[]);
+    let view = View { marks: false, ..view };
+    let pixel = |scene: &Scene| draw(scene, &view, &in_linear(), 16).pixel(8, 8);
+    let sky = |light: f64| {
+        let panorama = Some(SkyPanorama {
+            panorama: painted(move |_| [light; 3]).into(),
+            turn: 0.0,
+            is_shown: true,
+        });
+        let kind = LightKind::Sky { ground: Color::BLACK, panorama };
+        Light::new("sky", 0, kind)
+    };
+    let [r, g, b] = scene.background.0;
+    for wrong in [Light { on: false, ..sky(0.5) }, Light { color: Color::BLACK, ..sky(0.5) }] {
+        scene.lights = List::from_iter([(LightId(500), wrong)]);
+        assert_eq!(pixel(&scene), [r, g, b, 255]);
+    }
+    scene.lights = List::from_iter([(LightId(500), sky(0.2)), (LightId(501), sky(0.3))]);
+    assert!(is_near(pixel(&scene), bytes([0.5; 3])));
+    // A panorama for a sky that is off switches it on; one that is lit comes first.
+    let lights = [Light { on: false, ..sky(0.1) }, sky(0.3)];
+    scene.lights = List::from_iter((500..).map(LightId).zip(lights).collect::<Vec<_>>());
+    for (count, want) in [(2, 0.7), (1, 0.9)] {
+        let panorama = painted(move |_| [want; 3]).into();
+        lighting::panorama(&scene, &view, panorama).unwrap().apply(&mut scene).unwrap();
+        assert!(is_near(pixel(&scene), bytes([want; 3])), "{want}");
+        assert_eq!(scene.lights.iter().filter(|(_, light)| light.on).count(), 1);
+        let kept = scene.lights.iter().take(count - 1).map(|(id, light)| (id, light.clone()));
+        scene.lights = List::from_iter(kept.collect::<Vec<_>>());
+    }
+    // Locked lights stay.
+    let mut locked = common::scene(&[]).0;
+    let id = locked.lights.ids().next().unwrap();
+    locked.locked.insert(marraztu_core::scene::ItemId::Light(id));
+    assert!(lighting::panorama(&locked, &view, painted(smooth).into()).is_err());
+}
+
+#[test]
+fn a_sharp_background_is_the_same_for_any_samples() {
+    let (mut scene, view) = scene(&[(ball(8), at(40.0, 30.0, 10.0, 0.0))]);
+    let view = View { marks: false, ..view };
+    let board = |d: DVec3| [f64::from(u8::from((d.x * 40.0).sin() * (d.y * 40.0).sin() > 0.0)); 3];
+    shine(&mut scene, painted(board), 0.0, false);
+    let draw = |samples: Samples, light: LightAt| {
+        draw(&scene, &view, &Settings { samples, light, ..Settings::default() }, 100)
+    };
+    let one = draw(Samples::One, LightAt::Pixel);
+    for (samples, light) in [(Samples::Four, LightAt::Sample), (Samples::Sixteen, LightAt::Pixel)] {
+        let many = draw(samples, light);
+        for y in (0..100).filter(|y| !(25..75).contains(y)) {
+            for x in 0..100 {
+                let (a, b) = (one.pixel(x, y), many.pixel(x, y));
+                let far = a.iter().zip(b).any(|(a, b)| a.abs_diff(b) > 1);
+                assert!(!far, "{samples:?} {x} {y}: {a:?} {b:?}");
+            }
+        }
+    }
+}
+
+#[test]
 fn a_scene_file_keeps_its_panorama_even_if_the_picture_is_missing() {
     let folder = tempfile::tempdir().unwrap();
     let [picture, file] = ["sky.png", "a.marraztu"].map(|name| folder.path().join(name));

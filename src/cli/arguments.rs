@@ -9,6 +9,7 @@ use clap::builder::{PathBufValueParser, PossibleValuesParser, TypedValueParser};
 use super::accuracy::Accuracy;
 use super::budget::Budget;
 use super::layers::{Encoding, LayerOptions};
+use super::sky::{Sky, sky};
 use super::talk::Talk;
 use super::terminal::TerminalForm;
 use super::values::{color, is_standard, is_terminal, size, threads};
@@ -192,10 +193,10 @@ pub(crate) struct Seeing {
         ("studio", Look::Studio),
     ]))]
     pub(crate) look: Option<Look>,
-    /// A panorama (HDR, EXR or other picture) that lights everything and is seen behind it, in place
-    /// of all lights; with --background, it only lights
-    #[arg(long, value_name = "FILE")]
-    pub(crate) sky: Option<PathBuf>,
+    /// A panorama (HDR, EXR or other picture) that replaces all lights and is seen behind
+    /// everything; with --background, it only lights
+    #[arg(long, value_name = "FILE", value_parser = sky)]
+    pub(crate) sky: Option<Sky>,
     /// The slots of the lights to switch on, as "0,2"; the others are off. "none" switches all off
     #[arg(long, value_name = "SLOTS", value_parser = slots)]
     pub(crate) lights: Option<Slots>,

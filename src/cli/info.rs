@@ -147,6 +147,20 @@ struct LightFacts {
     selected: bool,
     on: bool,
     color: [u8; 3],
+    /// The panorama of a sky.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    panorama: Option<PanoramaFacts>,
+}
+
+/// The panorama of a sky.
+#[derive(Serialize)]
+struct PanoramaFacts {
+    file: String,
+    missing: bool,
+    /// Degrees about Y.
+    turn: f64,
+    /// Whether it is the background.
+    shown: bool,
 }
 
 impl SceneFacts {
@@ -167,6 +181,12 @@ impl SceneFacts {
             selected: view.light == Some(id),
             on: light.on,
             color: light.color.0,
+            panorama: light.kind.panorama().map(|sky| PanoramaFacts {
+                file: with_slashes(&sky.panorama.source),
+                missing: sky.panorama.is_placeholder(),
+                turn: sky.turn,
+                shown: sky.is_shown,
+            }),
         };
         Self {
             file: with_slashes(file),
@@ -229,9 +249,14 @@ pub(super) fn scene_text(file: &Path, scene: &Scene, view: &View) -> String {
         lines.push(format!("{} {name}: at ({x}, {y}, {z})", mark(*selected)));
     }
     lines.push(head("lights", facts.lights.len()));
-    for LightFacts { slot, name, selected, on, color: [r, g, b] } in &facts.lights {
+    for LightFacts { slot, name, selected, on, color: [r, g, b], panorama } in &facts.lights {
         let on = if *on { "on" } else { "out" };
-        lines.push(format!("{} {slot} {name}: {on}, ({r}, {g}, {b})", mark(*selected)));
+        let sky = panorama.as_ref().map_or_else(String::new, |it| {
+            let missing = if it.missing { " (missing)" } else { "" };
+            let shown = if it.shown { "" } else { ", not shown" };
+            format!(", {}{missing} turned {} deg{shown}", it.file, it.turn)
+        });
+        lines.push(format!("{} {slot} {name}: {on}, ({r}, {g}, {b}){sky}", mark(*selected)));
     }
     let [r, g, b] = facts.background;
     lines.push(format!("{:16}({r}, {g}, {b})", "background"));

@@ -33,6 +33,7 @@ mod open;
 mod page;
 mod plan;
 mod render;
+mod sky;
 mod split;
 mod stage;
 mod talk;

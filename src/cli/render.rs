@@ -9,7 +9,7 @@ use marraztu_core::accuracy::{AccuracyPreset, Settings, Shot};
 use marraztu_core::base::image::Size;
 use marraztu_core::edit::{framing, items, lighting};
 use marraztu_core::scene::{
-    CameraId, Command, Fill, Intrinsics, Light, Object, Observer, Pose, Projection,
+    CameraId, Command, Fill, Intrinsics, Light, Object, Observer, Pose, Projection, Scene,
 };
 use marraztu_io::{self as io, Progress};
 use marraztu_lab::dial::{Dial, Figures, Step, error_in_words, is_steady};
@@ -351,9 +351,10 @@ pub(super) fn look(stage: &mut Stage, seeing: &Seeing, aim: &Aim) -> Result<(), 
     {
         stage.change(command)?;
     }
-    if let Some(file) = &seeing.sky {
-        let panorama = io::load_panorama(file)?;
-        let command = lighting::panorama(&stage.scene, &stage.view, panorama.into());
+    if let Some(sky) = &seeing.sky {
+        // Locks are for the hands of a user.
+        let unlocked = Scene { locked: Default::default(), ..stage.scene.clone() };
+        let command = lighting::panorama_alone(&unlocked, sky.panorama()?);
         stage.change(command.map_err(|refusal| usage(&refusal.to_string()))?)?;
     }
     if let Some(Slots(slots)) = &seeing.lights {

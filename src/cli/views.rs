@@ -14,6 +14,7 @@ use super::batch::views::parse_views;
 use super::failure::{Failure, usage};
 use super::info::scene_text;
 use super::render::{cover, look};
+use super::sky::Sky;
 use super::stage::{Stage, Watch};
 use super::talk::{Talk, note, print};
 use super::target::default_name;
@@ -74,7 +75,8 @@ pub(super) fn views(arguments: &Views) -> Result<(), Failure> {
     let path = out.clone().unwrap_or_else(|| default_sheet(&files));
     io::check_picture_target(&path)?;
     let mut stage = Stage::of(&files, reading, Watch::Bar)?;
-    stage.sources(&files).spare(&path)?;
+    let sky = seeing.sky.as_ref().map(Sky::path);
+    stage.sources(&files).with(sky).spare(&path)?;
     let facts = facts(file, &stage);
     cover(&mut stage, surfaces)?;
     let mut renderer = Renderer::default();

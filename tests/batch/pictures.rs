@@ -283,3 +283,37 @@ fn views_and_thumbnails_show_a_model_whatever_its_name() {
     assert!(err.starts_with("error: noise: "), "{err}");
     assert!(!at("n.png").exists());
 }
+
+#[test]
+fn a_panorama_lights_every_picture_and_a_changed_one_draws_them_again() {
+    let folder = folder();
+    let sky = folder.path().join("sky.png");
+    let fill = |color: [u8; 3]| {
+        image::RgbImage::from_pixel(8, 4, image::Rgb(color)).save(&sky).unwrap();
+    };
+    fill([10, 120, 240]);
+    let arguments = ["batch", "models/cam.obj", "--views", "front,iso", "--size", "64x48"];
+    let arguments = [&arguments[..], &["--sky", "sky.png", "--resume"]].concat();
+    let (_, err) = ends_with(0, folder.path(), &arguments);
+    assert!(err.starts_with("note: 2 drawn"), "{err}");
+    let corner = |name: &str| io::load_picture(&folder.path().join(name)).unwrap().pixel(0, 0);
+    assert_eq!([corner("cam-000.png"), corner("cam-001.png")], [[10, 120, 240, 255]; 2]);
+    let (_, err) = ends_with(0, folder.path(), &arguments);
+    assert!(err.starts_with("note: 0 drawn"), "{err}");
+    fill([200, 30, 0]);
+    let (_, err) = ends_with(0, folder.path(), &arguments);
+    assert!(err.starts_with("note: 2 drawn"), "{err}");
+    assert_eq!(corner("cam-000.png"), [200, 30, 0, 255]);
+    // With a background, it only lights. It is an input, which no output replaces.
+    let plain = ["render", "models/cam.obj", "--size", "64x48", "--sky", "sky.png", "--out"];
+    let behind = ["one.png", "--background", "white"];
+    ends_with(0, folder.path(), &[&plain[..], &behind].concat());
+    assert_eq!(corner("one.png"), [255; 4]);
+    let own = ["views", "models/cam.obj", "--sky", "sky.png", "--out", "sky.png"];
+    let (_, err) = ends_with(1, folder.path(), &own);
+    assert!(err.contains("input"), "{err}");
+    ends_with(1, folder.path(), &[&plain[..], &["sky.png"]].concat());
+    assert_eq!(corner("sky.png"), [200, 30, 0, 255]);
+    let (_, err) = ends_with(1, folder.path(), &["render", "models/cam.obj", "--sky", "none.hdr"]);
+    assert_eq!(err.lines().count(), 1, "{err}");
+}

@@ -27,12 +27,18 @@ pub fn panorama_endings() -> Vec<&'static str> {
 /// # Errors
 /// If the file cannot be read, is not a picture, or is too large.
 pub fn load_panorama(path: &Path) -> Result<Panorama, LoadError> {
-    panorama_of(path, &read(path, MOST_BYTES, &Progress::new())?)
+    load_panorama_within(path, Panorama::MOST_TEXELS)
 }
 
-/// Decodes the panorama of a file.
-pub(super) fn panorama_of(path: &Path, content: &[u8]) -> Result<Panorama, LoadError> {
-    let (decoded, cut_off) = decode_bytes(path, content, Panorama::MOST_TEXELS, &FLOAT_FORMATS)?;
+/// Works like [`load_panorama`], with at most this number of texels.
+pub(super) fn load_panorama_within(path: &Path, most: usize) -> Result<Panorama, LoadError> {
+    panorama_of(path, &read(path, MOST_BYTES, &Progress::new())?, most)
+}
+
+/// Decodes the panorama of a file with at most this number of texels.
+pub(super) fn panorama_of(path: &Path, content: &[u8], most: usize) -> Result<Panorama, LoadError> {
+    let most = most.min(Panorama::MOST_TEXELS);
+    let (decoded, cut_off) = decode_bytes(path, content, most, &FLOAT_FORMATS)?;
     let damaged = || LoadError::file(&shown(path), "the picture is damaged");
     if cut_off {
         return Err(damaged());
@@ -51,7 +57,7 @@ pub(super) const CUBE: [&str; 6] =
     ["cube_right", "cube_left", "cube_top", "cube_bottom", "cube_front", "cube_back"];
 
 /// The largest face of a cube that keeps its size.
-const LARGEST_FACE: usize = 2048;
+const LARGEST_FACE: usize = 1024;
 
 /// Converts the six pictures of a cube, seen from its middle, to a panorama: right is +X, top +Y
 /// and front +Z. Right, left, front and back stand upright; the upper edge of the top and the lower

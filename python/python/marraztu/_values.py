@@ -125,12 +125,6 @@ class Light(NamedTuple):
     spot, or the angular diameter of a sun in radians."""
     ground: tuple[int, int, int] = (0, 0, 0)
     """Of a sky: the colour below the horizon, without a panorama."""
-    panorama: str | PathLike[str] | None = None
-    """Of a sky: the file of a picture of everything around, as HDR, EXR, PNG or JPEG."""
-    turn: float = 0.0
-    """The angle by which a panorama is turned about Y, in radians, anticlockwise from above."""
-    shown: bool = True
-    """Whether a panorama is the background; mirrors show it in any case."""
     position: Triple | None = None
     direction: Triple | None = None
     """The direction in which the light travels."""
@@ -140,6 +134,14 @@ class Light(NamedTuple):
     """Of a spot: the concentration of the light along the axis."""
     attenuation: Triple = (1.0, 0.0, 0.0)
     """(c, l, q): light is divided by c + l d + q d^2 at the distance d."""
+    panorama: str | PathLike[str] | None = None
+    """Of a sky: the file of a picture of everything around, as HDR, EXR, PNG or JPEG.
+
+    It is read when lights are set, unless a light of the scene has read it before."""
+    turn: float = 0.0
+    """The angle by which a panorama is turned about Y, in radians, anticlockwise from above."""
+    shown: bool = True
+    """Whether a panorama is the background; mirrors show it in any case."""
 
     @classmethod
     def ambient(cls, color: Sequence[int] | str = (255, 255, 255)) -> Light:

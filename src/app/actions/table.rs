@@ -415,7 +415,7 @@ actions! {
         "Studio lights" "Replaces all lights by a sky with occlusion and a large soft lamp."
         "look ambient occlusion soft shadows beautiful render setup preset";
     ChoosePanorama Light ONCE []
-        "Panorama..." "Lights the scene with a picture of everything around, which is shown behind it."
+        "Panorama..." "Lights the scene with a picture of everything around, shown behind it."
         "sky environment hdri hdr exr equirectangular ibl image based lighting background map";
     FitExposure Light ONCE []
         "Fit exposure" "Sets the highest exposure that does not overexpose surfaces."

@@ -111,18 +111,19 @@ impl Wanted {
                 ("Choose a texture", Mode::Open, io::texture_endings())
             }
             Self::Panorama => ("Choose a panorama", Mode::Open, io::panorama_endings()),
-            Self::Missing(path) if is_picture(path) => {
-                ("Where is the missing picture?", Mode::Open, io::panorama_endings())
+            Self::Missing(path) if has_ending(path, &io::texture_endings()) => {
+                ("Where is the missing picture?", Mode::Open, io::texture_endings())
+            }
+            Self::Missing(path) if has_ending(path, &io::panorama_endings()) => {
+                ("Where is the missing panorama?", Mode::Open, io::panorama_endings())
             }
             Self::Missing(_) => ("Where is the missing model?", Mode::Open, models()),
         }
     }
 }
 
-/// Returns whether a path has the extension of a picture.
-fn is_picture(path: &Path) -> bool {
+/// Returns whether a path has one of these extensions.
+fn has_ending(path: &Path, endings: &[&str]) -> bool {
     let ending = path.extension().map(|ending| ending.to_string_lossy());
-    ending.is_some_and(|ending| {
-        io::panorama_endings().iter().any(|own| own.eq_ignore_ascii_case(&ending))
-    })
+    ending.is_some_and(|ending| endings.iter().any(|own| own.eq_ignore_ascii_case(&ending)))
 }

@@ -20,6 +20,9 @@ use marraztu_lab::front::{Point, front, most_exact_within};
 /// A change of the time of full frames by this factor means that the scene is another one.
 const ANOTHER_SCENE: f64 = 1.5;
 
+/// The time of a picture at rest from which on a preview is shown first.
+const SLOW: Duration = Duration::from_millis(500);
+
 /// The part of the error that a slower reduction has to remove to be on the front.
 const LEAST_CUT: f64 = 0.05;
 
@@ -33,12 +36,18 @@ struct Known {
 }
 
 /// Chooses the reduction from measured frame times and errors.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct AdaptiveQuality {
     known: [Known; COUNT],
     /// The time of the last frame at full quality that was redrawn in part.
     part: Option<Duration>,
     last: Reduction,
+}
+
+impl Default for AdaptiveQuality {
+    fn default() -> Self {
+        Self { known: [Known::default(); COUNT], part: None, last: Reduction::NONE }
+    }
 }
 
 impl AdaptiveQuality {
@@ -51,8 +60,12 @@ impl AdaptiveQuality {
         applicable: Applicable,
         budget: Duration,
     ) -> Reduction {
-        // Full quality if nothing moves, if it keeps the budget, or if its time is not known yet.
         let full = self.expected(Reduction::NONE, share);
+        // A picture of many rays that is slow, or new, is preceded by one of few.
+        if !moving && full.is_none_or(|time| time > SLOW) {
+            return applicable.limited(Reduction::PREVIEW);
+        }
+        // Full quality if nothing moves, if it keeps the budget, or if its time is not known yet.
         if !moving || full.is_none_or(|time| time <= budget) {
             return Reduction::NONE;
         }
@@ -212,7 +225,7 @@ mod tests {
     const BUDGET: Duration = Duration::from_millis(33);
 
     fn all() -> Applicable {
-        Applicable { settings: Settings::default(), textured: true }
+        Applicable { settings: Settings::default(), textured: true, casts_rays: false }
     }
 
     fn ms(time: u64) -> Duration {

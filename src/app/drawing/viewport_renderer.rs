@@ -123,7 +123,8 @@ impl ViewportRenderer {
         let mut changes = self.renderer.damage(&plan);
         let share = share(&changes);
         let DrawOptions { moving, budget, .. } = wanted.options;
-        let reduction = self.quality.choose(moving, share, applicable(wanted), budget);
+        let applicable = applicable(wanted, plan.casts_rays());
+        let reduction = self.quality.choose(moving, share, applicable, budget);
         if reduction != Reduction::NONE && !changes.is_nothing() {
             plan = planned(wanted, reduction);
             changes = self.renderer.damage(&plan);
@@ -190,12 +191,20 @@ impl ViewportRenderer {
         snapshot: &Snapshot,
         wanted: &(dyn Fn() -> bool + Sync),
     ) -> Finer {
-        if snapshot.options.moving || self.gave_up || self.shown != Some(Reduction::NONE) {
+        if snapshot.options.moving || self.gave_up {
             return Finer::Done;
         }
-        // Measurements come first: they decide the quality of the next drag.
-        let applicable = applicable(snapshot);
         let begun = (self.clock)();
+        let full = planned(snapshot, Reduction::NONE);
+        let applicable = applicable(snapshot, full.casts_rays());
+        match self.shown {
+            Some(Reduction::NONE) => {}
+            Some(shown) if shown == Reduction::PREVIEW => {
+                return self.complete(&full, snapshot, wanted);
+            }
+            Some(_) | None => return Finer::Done,
+        }
+        // Measurements come first: they decide the quality of the next drag.
         let measured = self.quality.unmeasured(applicable, snapshot.options.budget);
         if let Some(reduction) = measured.filter(|_| snapshot.options.coarse) {
             if self.finer.redraw(&planned(snapshot, reduction), wanted).is_err() {
@@ -219,6 +228,32 @@ impl ViewportRenderer {
         present(&mut self.images, self.finer.picture());
         self.refined = Some(samples);
         let time = (self.clock)().duration_since(begun);
+        Finer::Refined(Box::new(self.drawn(time, changes)))
+    }
+
+    /// Draws the full picture after its preview.
+    fn complete(
+        &mut self,
+        full: &FramePlan,
+        snapshot: &Snapshot,
+        wanted: &(dyn Fn() -> bool + Sync),
+    ) -> Finer {
+        let begun = (self.clock)();
+        let changes = self.renderer.damage(full);
+        let painted = &self.painted;
+        let tell = |done, all| painted.tell(done, all);
+        let drawn = self.renderer.redraw_watched(full, wanted, &tell);
+        painted.tell(0, 0);
+        if drawn.is_err() {
+            // Picks read the picture that is shown.
+            let preview = planned(snapshot, Reduction::PREVIEW);
+            _ = self.renderer.redraw(&preview, &|| true);
+            return Finer::Disturbed;
+        }
+        present(&mut self.images, self.renderer.picture());
+        (self.shown, self.refined) = (Some(Reduction::NONE), None);
+        let time = (self.clock)().duration_since(begun);
+        self.quality.record(Reduction::NONE, 1.0, time);
         Finer::Refined(Box::new(self.drawn(time, changes)))
     }
 
@@ -299,12 +334,14 @@ fn share(changes: &Damage) -> f64 {
     changes.tiles() as f64 / changes.tiles_in_all() as f64
 }
 
-fn applicable(wanted: &Snapshot) -> Applicable {
+fn applicable(wanted: &Snapshot, casts_rays: bool) -> Applicable {
     let textured = wanted.shot.scene.objects.iter().any(|(_, object)| {
         let own = object.model.materials.iter().any(|material| material.texture.is_some());
         object.visible && object.surface != Surface::Material && (own || object.texture.is_some())
     });
-    Applicable { settings: wanted.shot.settings, textured }
+    let lights = wanted.shot.scene.lights.iter();
+    let is_soft = lights.map(|(_, light)| light).any(|light| light.on && light.is_soft());
+    Applicable { settings: wanted.shot.settings, textured, casts_rays: is_soft || casts_rays }
 }
 
 #[cfg(test)]
@@ -380,6 +417,29 @@ mod tests {
         let other = renderer.draw(&recolored(&wanted, 9), &this).unwrap();
         statistics.note(&other, 3);
         assert_eq!(statistics.time, other.time);
+    }
+
+    #[test]
+    fn a_new_picture_with_many_rays_is_preceded_by_one_of_few() {
+        let lesson = io::lesson_scene("soft").unwrap();
+        let own = snapshot(Size::new(64, 48));
+        let shot = Shot::new(&lesson.scene, &lesson.view, &Settings::default(), own.shot.size);
+        let wanted = Snapshot { shot, options: own.options };
+        let mut renderer = ViewportRenderer::new(Instant::now, Arc::default());
+        let preview = renderer.draw(&wanted, &this).unwrap();
+        assert_eq!(preview.reduction, Reduction::PREVIEW);
+        // Disturbed, the preview stays, and can be picked.
+        assert!(matches!(renderer.refine(&wanted, &|| false), Finer::Disturbed));
+        assert!(renderer.hit([32, 40]).is_some());
+        let Finer::Refined(full) = renderer.refine(&wanted, &|| true) else { panic!("full") };
+        assert_eq!((full.reduction, full.refined), (Reduction::NONE, None));
+        let expected = Renderer::default().render(&planned(&wanted, Reduction::NONE)).clone();
+        assert_eq!(*renderer.renderer.picture(), expected);
+        assert_ne!(preview.image.pixels, full.image.pixels);
+        // Nothing has changed, and the next picture is quick enough to be drawn at once.
+        assert!(renderer.draw(&wanted, &this).is_none());
+        let next = renderer.draw(&recolored(&wanted, 9), &this).unwrap();
+        assert_eq!(next.reduction, Reduction::NONE);
     }
 
     #[test]

@@ -24,11 +24,17 @@ const LINES: i32 = 10;
 /// plane.
 const PIECES: i32 = 20;
 
-/// Draws the grid on the ground over pixels of `image` that show the background.
+/// Draws the grid on the ground over pixels of `image` that show the background, unless that is a
+/// panorama.
 pub(super) fn grid_ui(ui: &Ui, state: &State, onto: &Projection, image: Option<&ColorImage>) {
-    let Some(image) = image.filter(|_| state.helpers.grid && state.shows_overlays()) else {
-        return;
-    };
+    // In front of a panorama, no pixel tells whether it shows the background.
+    let is_plain = state
+        .scene
+        .lights
+        .iter()
+        .all(|(_, light)| !(light.on && light.kind.panorama().is_some_and(|sky| sky.is_shown)));
+    let is_drawn = state.helpers.grid && state.shows_overlays() && is_plain;
+    let Some(image) = image.filter(|_| is_drawn) else { return };
     let [r, g, b] = state.scene.background.0;
     let rect = onto.rect();
     let ground = Ground { image, rect, background: Color32::from_rgb(r, g, b) };

@@ -36,8 +36,8 @@ pub(super) struct SourceHash {
     pub(super) file: String,
     /// The hash of the file and all files that it refers to.
     all: String,
-    /// The SHA-256 of the texture of the options, empty if it cannot be read.
-    texture: Option<String>,
+    /// The SHA-256 of the texture and the panorama of the options, empty if one cannot be read.
+    pictures: [Option<String>; 2],
 }
 
 impl SourceHash {
@@ -57,8 +57,8 @@ impl SourceHash {
             // Writing to a string cannot fail.
             let _ = writeln!(all, "{name:?} {hash}");
         }
-        let texture = row.texture().map(|path| hash(path).unwrap_or_default());
-        Some(Self { file, all: hex(&Sha256::digest(all)), texture })
+        let pictures = [row.texture(), row.sky()].map(|path| Some(hash(path?).unwrap_or_default()));
+        Some(Self { file, all: hex(&Sha256::digest(all)), pictures })
     }
 }
 
@@ -73,8 +73,8 @@ type Memory<K, T> = Mutex<BTreeMap<K, Slot<Option<T>>>>;
 pub(super) struct Stamper {
     /// The program's version and its renderer.
     program: String,
-    /// The hashes by model and texture, and by file.
-    sources: Memory<(PathBuf, Option<PathBuf>), SourceHash>,
+    /// The hashes by model, texture and panorama, and by file.
+    sources: Memory<[Option<PathBuf>; 3], SourceHash>,
     files: Memory<PathBuf, String>,
 }
 
@@ -94,9 +94,10 @@ impl Stamper {
 
     /// Returns the stamp of a picture that is drawn from files with these hashes.
     pub(super) fn stamp(&self, job: &Job, source: &SourceHash) -> String {
-        let (camera, size, texture) = (job.camera(), job.size(), &source.texture);
+        let (camera, size) = (job.camera(), job.size());
+        let [texture, sky] = &source.pictures;
         let text = format!(
-            "{VERSION}\n{}\n{}\n{}{:?}\n{}x{}\n{}\n{texture:?}\n",
+            "{VERSION}\n{}\n{}\n{}{:?}\n{}x{}\n{}\n{texture:?}\n{}",
             self.program,
             source.all,
             job.row.kind.parsed.text,
@@ -104,6 +105,8 @@ impl Stamper {
             size.width,
             size.height,
             job.encodings(),
+            // Pictures without a panorama keep their stamps.
+            sky.as_ref().map_or_else(String::new, |sky| format!("{sky}\n")),
         );
         hex(&Sha256::digest(text))
     }
@@ -112,7 +115,7 @@ impl Stamper {
     /// model cannot be read. Pictures are compared with these hashes; a picture that is drawn has
     /// the hashes of its loaded files ([`SourceHash::of`]).
     pub(super) fn known(&self, row: &Row) -> Option<SourceHash> {
-        let key = (row.file.clone(), row.texture().map(Path::to_owned));
+        let key = [Some(&*row.file), row.texture(), row.sky()].map(|path| path.map(Path::to_owned));
         let file = |path: &Path| once(&self.files, path.to_owned(), || hash_of_file(path).ok());
         once(&self.sources, key, || SourceHash::by(row, &file))
     }

@@ -327,7 +327,8 @@ pub(super) fn check_inputs(plan: &Plan, rows: &Rows) -> Result<(), Failure> {
     let referred = files.iter().filter_map(|file| companions(file)).flatten();
     let textures = rows.rows.iter().filter_map(|row| row.texture());
     let read = Sources::default().with(&files).with(referred.filter_map(|(_, path)| path));
-    let read = read.with(textures);
+    let skies = rows.rows.iter().filter_map(|row| row.sky());
+    let read = read.with(textures).with(skies);
     foreign.iter().try_for_each(|path| read.spare(path)).map_err(Failure::from)
 }
 

@@ -18,6 +18,7 @@ use super::template::{Fields, Template};
 use super::views::{CameraView, own_view, parse_views};
 use crate::cli::failure::{Failure, usage};
 use crate::cli::layers::{Encoding, LayerFile};
+use crate::cli::sky::Sky;
 use crate::cli::stage::is_scene;
 use crate::cli::values::is_standard;
 
@@ -76,6 +77,11 @@ impl Row {
     /// Returns the place for messages, such as "list.csv:3".
     pub(super) fn place(&self) -> String {
         list::place(self.line.as_ref(), &self.file)
+    }
+
+    /// Returns the panorama of the options.
+    pub(super) fn sky(&self) -> Option<&Path> {
+        self.kind.parsed.options.scene.seeing.sky.as_ref().map(Sky::path)
     }
 
     /// Returns the texture of the options.
@@ -182,7 +188,8 @@ impl Rows {
     /// Returns the files that are read: the list, models and scenes, and cameras.
     pub(super) fn inputs(&self) -> Sources {
         let files = self.rows.iter().map(|row| &row.file);
-        Sources::default().with(&self.list).with(files).with(&self.cameras)
+        let skies = self.rows.iter().filter_map(|row| row.sky());
+        Sources::default().with(&self.list).with(files).with(&self.cameras).with(skies)
     }
 }
 
@@ -313,9 +320,12 @@ impl RowReader {
             }
         }
         let parsed = self.parser.parse(&texts).map_err(of_option)?;
-        if let Some(texture) = &parsed.options.scene.surfaces.texture {
-            let found = io::check_file(texture).map_err(|error| error.to_string());
-            found.map_err(column("texture"))?;
+        let scene = &parsed.options.scene;
+        let sky = scene.seeing.sky.as_ref().map(|sky| ("sky", sky.path()));
+        let texture = scene.surfaces.texture.as_deref().map(|path| ("texture", path));
+        for (name, path) in sky.into_iter().chain(texture) {
+            let found = io::check_file(path).map_err(|error| error.to_string());
+            found.map_err(column(name))?;
         }
         let seeing = &parsed.options.scene.seeing;
         let has_camera = seeing.camera.is_some() || seeing.from.is_some();

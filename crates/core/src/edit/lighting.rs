@@ -16,6 +16,7 @@
 use glam::DVec3;
 
 use super::items::{change_light, put_light};
+use super::set_transform::unlocked;
 use super::{Change, Refusal, framing};
 use crate::base::Shared;
 use crate::base::color::Color;
@@ -118,35 +119,49 @@ pub fn studio(scene: &Scene, view: &View) -> Change {
     Ok(Command::Batch(commands))
 }
 
-/// Lights the scene with a panorama, which is also the background: a sky gets it, the selected one
-/// first. Without a sky, one with occlusion replaces all lights.
+/// Lights the scene with a panorama, which is also the background: a sky gets it and is switched
+/// on, the selected one, else one that is on, else the first. Without a sky, the panorama replaces
+/// all lights.
 ///
 /// # Errors
-/// If the sky is locked.
+/// If a light that would change is locked.
 pub fn panorama(scene: &Scene, view: &View, panorama: Shared<Panorama>) -> Change {
-    let of = |turn: f64| Some(SkyPanorama { panorama: panorama.clone(), turn, is_shown: true });
-    let is_sky = |id: &LightId| {
-        scene.lights.get(*id).is_some_and(|light| matches!(light.kind, LightKind::Sky { .. }))
+    let is_sky = |light: &Light| matches!(light.kind, LightKind::Sky { .. });
+    let skies = || scene.lights.iter().filter(|(_, light)| is_sky(light));
+    let selected = skies().find(|(id, _)| view.light == Some(*id));
+    let Some((id, _)) =
+        selected.or_else(|| skies().find(|(_, it)| it.on)).or_else(|| skies().next())
+    else {
+        return panorama_alone(scene, panorama);
     };
-    let selected = view.light.filter(is_sky);
-    if let Some(id) = selected.or_else(|| scene.lights.ids().find(is_sky)) {
-        return change_light(scene, id, |light| {
-            if let LightKind::Sky { panorama, .. } = &mut light.kind {
-                // The colour of a plain sky is not meant for a picture of one.
-                match panorama {
-                    Some(own) => *panorama = of(own.turn),
-                    None => (*panorama, light.color) = (of(0.0), Color::WHITE),
-                }
+    unlocked(scene, ItemId::Light(id))?;
+    change_light(scene, id, |light| {
+        light.on = true;
+        if let LightKind::Sky { panorama: own, .. } = &mut light.kind {
+            let turn = own.as_ref().map_or(0.0, |own| own.turn);
+            // The colour of a plain sky is not meant for a picture of one.
+            if own.is_none() {
+                light.color = Color::WHITE;
             }
-        });
-    }
+            *own = Some(SkyPanorama { panorama, turn, is_shown: true });
+        }
+    })
+}
+
+/// Replaces all lights by a sky with a panorama and occlusion, which is also the background.
+///
+/// # Errors
+/// If a light is locked.
+pub fn panorama_alone(scene: &Scene, panorama: Shared<Panorama>) -> Change {
     let (mut lit, mut commands) = (scene.clone(), Vec::new());
     for id in scene.lights.ids() {
+        unlocked(scene, ItemId::Light(id))?;
         let command = Command::Remove(ItemId::Light(id));
         command.clone().apply(&mut lit)?;
         commands.push(command);
     }
-    let kind = LightKind::Sky { ground: Color::BLACK, panorama: of(0.0) };
+    let panorama = Some(SkyPanorama { panorama, turn: 0.0, is_shown: true });
+    let kind = LightKind::Sky { ground: Color::BLACK, panorama };
     commands.push(put_light(&lit, Light { shadows: true, ..Light::new("sky", 0, kind) })?);
     Ok(Command::Batch(commands))
 }

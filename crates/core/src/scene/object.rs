@@ -255,7 +255,9 @@ impl Object {
                 || (self.texture.is_none() && file.is_none_or(|file| file.multiplies_colors)),
             texture: texture.filter(|_| self.surface != Surface::Material),
             maps: file.map(|file| &file.maps).filter(|_| self.surface != Surface::Material),
-            environment: file.and_then(|file| file.environment.as_ref()).filter(|_| of_file),
+            environment: file
+                .and_then(|file| file.environment.as_ref())
+                .filter(|_| of_file && self.surface != Surface::Material),
             of_file,
         }
     }

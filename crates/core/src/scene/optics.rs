@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What a surface shows of its surroundings, by rays: `illum` 3 to 7, `Ni` and `Tf` of an MTL file.
+/// What a surface shows of its surroundings, by rays: `illum` 3 to 9, `Ni` and `Tf` of an MTL file.
 ///
 /// The colour of a point is its own colour, plus R times the colour seen along the mirrored ray,
 /// plus (1 - R) times the [`transmission`](Self::transmission) times the colour seen along the

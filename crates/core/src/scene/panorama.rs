@@ -20,14 +20,17 @@ pub struct Panorama {
     texels: Texels,
     /// Whether the light is linear, as in HDR and EXR files, or stored, as in PNG and JPEG.
     is_linear: bool,
+    /// Whether it replaces a missing file.
+    is_placeholder: bool,
     /// The light in stored and in linear values, with smaller copies, made on first use.
     prepared: [OnceLock<PanoramaLight>; 2],
 }
 
 impl PartialEq for Panorama {
     fn eq(&self, other: &Self) -> bool {
-        let Self { source, texels, is_linear, prepared: _ } = self;
-        (source, texels, is_linear) == (&other.source, &other.texels, &other.is_linear)
+        let Self { source, texels, is_linear, is_placeholder, prepared: _ } = self;
+        (source, is_linear, is_placeholder, texels)
+            == (&other.source, &other.is_linear, &other.is_placeholder, &other.texels)
     }
 }
 
@@ -42,15 +45,13 @@ pub struct SkyPanorama {
     pub is_shown: bool,
 }
 
-/// The picture of every placeholder: one white texel.
-static PLACEHOLDER: OnceLock<Texels> = OnceLock::new();
-
 /// Texels brighter than this are clamped to it.
 const BRIGHTEST: f32 = 1e6;
 
 impl Panorama {
-    /// The largest number of texels.
-    pub const MOST_TEXELS: usize = 1 << 27;
+    /// The largest number of texels: they take 1.6 GB, or 200 MB in a browser.
+    pub const MOST_TEXELS: usize =
+        if cfg!(target_pointer_width = "32") { 1 << 24 } else { 1 << 27 };
 
     /// Creates a panorama of these texels, row by row from the top; `None` if their number does not
     /// fit, or is 0. What is no number or below 0 becomes 0.
@@ -68,18 +69,21 @@ impl Panorama {
             *channel = channel.max(0.0).min(BRIGHTEST);
         }
         let texels = Texels { size, light };
-        Some(Self { source: source.into(), texels, is_linear, prepared: Default::default() })
+        let (source, prepared) = (source.into(), Default::default());
+        Some(Self { source, texels, is_linear, is_placeholder: false, prepared })
     }
 
-    /// Builds a panorama that replaces a missing or unreadable file. It keeps the file's path.
+    /// Builds a white panorama that replaces a missing or unreadable file. It keeps the file's
+    /// path.
     pub fn placeholder(source: PathBuf) -> Self {
-        let texels = placeholder().clone();
-        Self { source, texels, is_linear: false, prepared: Default::default() }
+        let texels = Texels { size: Size::new(1, 1), light: vec![[1.0; 3]] };
+        let prepared = Default::default();
+        Self { source, texels, is_linear: false, is_placeholder: true, prepared }
     }
 
     /// Returns whether the panorama replaces a missing file.
-    pub fn is_placeholder(&self) -> bool {
-        self.texels == *placeholder()
+    pub const fn is_placeholder(&self) -> bool {
+        self.is_placeholder
     }
 
     /// Returns the width and height in texels.
@@ -104,10 +108,6 @@ impl Panorama {
             PanoramaLight::new(&self.texels, convert)
         })
     }
-}
-
-fn placeholder() -> &'static Texels {
-    get_or_compute(&PLACEHOLDER, || Texels { size: Size::new(1, 1), light: vec![[1.0; 3]] })
 }
 
 impl SkyPanorama {
@@ -242,10 +242,10 @@ impl PanoramaLight {
 }
 
 impl Texels {
-    /// Returns the height of the upper edge of a row: the cosine of its angle from +Y.
+    /// Returns the height of the upper edge of a row.
     #[expect(clippy::cast_precision_loss, reason = "fewer than 2^53 rows")]
     fn edge(&self, row: usize) -> f64 {
-        libm::cos(std::f64::consts::PI * row as f64 / self.size.height as f64)
+        Self::height_at(row as f64 / self.size.height as f64)
     }
 
     #[expect(clippy::cast_precision_loss, reason = "fewer than 2^53 columns")]
@@ -312,32 +312,55 @@ impl Texels {
         })
     }
 
-    /// Returns a copy of half the width and height, rounded up.
+    /// Returns the height of the line at a fraction of the way down: the cosine of its angle from
+    /// +Y.
+    fn height_at(part: f64) -> f64 {
+        libm::cos(std::f64::consts::PI * part)
+    }
+
+    /// Returns a copy of half the width and height, rounded up. Each texel is the mean of what it
+    /// covers, by solid angle, so the light of the whole stays the same for odd sizes, too.
     #[expect(clippy::cast_possible_truncation, reason = "light is kept in f32")]
     fn halved(&self) -> Self {
         let Size { width, height } = self.size;
         let size = Size::new(width.div_ceil(2), height.div_ceil(2));
+        let columns: Vec<_> = (0..size.width).map(|i| covered(i, size.width, width)).collect();
         let mut light = Vec::with_capacity(size.area());
         for row in 0..size.height {
-            let rows = [2 * row, (2 * row + 1).min(height - 1)];
-            let weights = rows.map(|row| self.edge(row) - self.edge(row + 1));
-            for column in 0..size.width {
-                let columns = [2 * column, (2 * column + 1).min(width - 1)];
-                let mut sum = [0.0; 3];
-                for (row, weight) in rows.iter().zip(weights) {
-                    for column in columns {
-                        let texel = self.light[row * width + column];
+            let rows = covered(row, size.height, height)
+                .map(|(own, from, to)| (own, Self::height_at(from) - Self::height_at(to)));
+            for columns in &columns {
+                let (mut sum, mut all) = ([0.0; 3], 0.0);
+                for (row, high) in rows {
+                    for (column, from, to) in columns {
+                        let (texel, weight) =
+                            (self.light[row * width + column], high * (to - from));
+                        all += weight;
                         for (sum, light) in sum.iter_mut().zip(texel) {
                             *sum += f64::from(light) * weight;
                         }
                     }
                 }
-                let all = 2.0 * (weights[0] + weights[1]);
                 light.push(sum.map(|it| (it / all) as f32));
             }
         }
         Self { size, light }
     }
+}
+
+/// Returns the cells of a row of `of` that cell `i` of a row of `count` covers, at most three: each
+/// with the ends of the common part, as fractions of the row.
+#[expect(clippy::cast_precision_loss, reason = "fewer than 2^53 cells")]
+fn covered(i: usize, count: usize, of: usize) -> [(usize, f64, f64); 3] {
+    let [from, to] = [i, i + 1].map(|end| end as f64 / count as f64);
+    let first = i * of / count;
+    std::array::from_fn(|k| {
+        let own = (first + k).min(of - 1);
+        let [low, high] = [first + k, first + k + 1].map(|end| end as f64 / of as f64);
+        // Beyond the last cell, nothing is left.
+        let (low, high) = (low.max(from), high.min(to));
+        (own, low, high.max(low))
+    })
 }
 
 /// Returns the brightness of a texel, with the weights of ITU-R BT.709.
@@ -392,6 +415,21 @@ mod tests {
         let half = painted(Size::new(256, 128), |d| f32::from(u8::from(d.y > 0.0)));
         let along = half.light(true).moments()[1].along;
         assert!(along.abs_diff_eq(DVec3::Y * PI, 1e-3), "{along}");
+    }
+
+    #[test]
+    fn smaller_copies_keep_the_light_of_odd_sizes() {
+        for (width, height) in [(1025, 513), (1000, 499), (257, 3), (1, 1), (5, 1), (1, 7)] {
+            for place in [0, width - 1, width * height - 1, width * (height / 2)] {
+                let mut texels = vec![[0.0; 3]; width * height];
+                texels[place] = [1000.0; 3];
+                let size = Size::new(width, height);
+                let lamp = Panorama::new("a.hdr", size, texels, true).unwrap();
+                let own = 1000.0 * lamp.texels.solid_angle(place);
+                let got = lamp.light(true).moments()[0].all;
+                assert!((got / own - 1.0).abs() < 1e-5, "{width} x {height}, {place}: {got} {own}");
+            }
+        }
     }
 
     #[test]

@@ -69,7 +69,7 @@ impl Writer<'_> {
             }
         }
         if left_out > 0 {
-            let text = "glTF has no ambient lights and no closed spots: left out";
+            let text = "glTF has no ambient lights, no skies and no closed spots: left out";
             self.notes.push(format!("{text}: {left_out}"));
         }
         if all.is_empty() {

@@ -68,6 +68,12 @@ pub(super) fn map(rest: &[u8]) -> Option<Map> {
 }
 
 impl Map {
+    /// Returns whether its options move, scale or change texels.
+    pub(super) fn changes_texels(&self) -> bool {
+        let is_placed = self.offset != [0.0; 2] || self.scale != [1.0; 2];
+        is_placed || self.tone != Tone::default() || !self.ignored.is_empty()
+    }
+
     /// Applies an option and returns the number of words that are its arguments, or `None` if the
     /// word is not an option.
     fn option(&mut self, word: &str, following: &[(usize, &str)]) -> Option<usize> {

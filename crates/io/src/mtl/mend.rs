@@ -89,8 +89,6 @@ impl Statements {
     fn optics(&self) -> Optics {
         let (reflection, transmits) = match self.illumination {
             Some(3.0 | 4.0) => (Reflection::Constant, false),
-            // Without rays: only a reflection map is mirrored.
-            Some(8.0 | 9.0) if !self.reflection_maps.is_empty() => (Reflection::Constant, false),
             Some(5.0) => (Reflection::Fresnel, false),
             Some(6.0) => (Reflection::Constant, true),
             Some(7.0) => (Reflection::Fresnel, true),

@@ -31,8 +31,8 @@ use super::texture::{Pictures, Read};
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::Picture;
 use marraztu_core::scene::{
-    BumpMaps, FileMaterial, MapKind, NONE, Panorama, SurfaceMap, SurfaceMaps, Texture, UndrawnMap,
-    Wrap,
+    BumpMaps, FileMaterial, MapKind, NONE, Panorama, Reflection, SurfaceMap, SurfaceMaps, Texture,
+    UndrawnMap, Wrap,
 };
 
 /// The most texels of all textures of a model: 2 GB.
@@ -61,7 +61,7 @@ pub(super) struct Library<'a> {
     counted: BTreeSet<PathBuf>,
     texels: usize,
     /// The reflection maps, by the paths of their pictures.
-    environments: BTreeMap<Vec<PathBuf>, Shared<Panorama>>,
+    environments: BTreeMap<Vec<PathBuf>, Result<Shared<Panorama>, LoadError>>,
     /// The paths of textures, by the folder of the MTL file and the name in it.
     found: BTreeMap<(PathBuf, String), Option<PathBuf>>,
     /// Textures by path and options: equal textures are shared.
@@ -215,7 +215,11 @@ impl<'a> Library<'a> {
         });
         let environment = self.environment(&statements, folders, findings);
         let undrawn_maps = self.undrawn_maps(&statements.undrawn_maps, folders);
-        let material = statements.mended((texture, maps), findings);
+        let mut material = statements.mended((texture, maps), findings);
+        // `illum` 8 and 9 mirror nothing but a picture.
+        if environment.as_ref().is_some_and(|it| it.is_alone) {
+            material.material.optics.reflection = Reflection::Constant;
+        }
         self.materials.push(FileMaterial { environment, undrawn_maps, ..material });
     }
 

@@ -101,14 +101,14 @@ impl Statements {
                 Some(map) => _ = self.maps.insert(kind, (line.number, map)),
                 None => note(FindingKind::MapUnnamed),
             },
-            b"disp" | b"map_disp" => match map(rest) {
+            _ if DISPLACEMENTS.contains(&&*plain) => match map(rest) {
                 Some(map) => {
                     self.undrawn_maps.push((decode(keyword), map.clone()));
                     self.displacement = Some((line.number, map));
                 }
                 None => note(FindingKind::MapUnnamed),
             },
-            b"refl" | b"map_refl" => match map(rest) {
+            _ if REFLECTIONS.contains(&&*plain) => match map(rest) {
                 Some(map) => {
                     self.undrawn_maps.push((decode(keyword), map.clone()));
                     self.reflection_maps.push((line.number, map));
@@ -146,7 +146,10 @@ impl Statements {
     /// Takes heights that would move vertices as a bump map, if there is no other relief.
     pub(super) fn settle_displacement(&mut self, findings: &mut Findings) {
         let Some((line, map)) = &self.displacement else { return };
-        if self.maps.contains_key(&MapKind::Bump) || self.maps.contains_key(&MapKind::Normal) {
+        let has = |kind| self.maps.get(&kind);
+        if has(MapKind::Bump).is_some_and(|(_, bump)| bump.name == map.name) {
+            // Our exports name it twice.
+        } else if has(MapKind::Bump).is_some() || has(MapKind::Normal).is_some() {
             findings.add(FindingKind::MapUnused, "disp", Some(*line));
         } else {
             findings.add(FindingKind::DisplacementIsBump, &self.name, Some(self.line));
@@ -169,12 +172,17 @@ pub(crate) fn map_names(bytes: &[u8]) -> Vec<String> {
     let of_line = |line: Line<'_>| {
         let (keyword, rest) = line.statement();
         let keyword = keyword.to_ascii_lowercase();
-        let is_map = matches!(&*keyword, b"map_kd" | b"refl" | b"map_refl" | b"disp")
-            || kind_of(&keyword).is_some();
+        let is_map = keyword == b"map_kd"
+            || kind_of(&keyword).is_some()
+            || [DISPLACEMENTS, REFLECTIONS].concat().contains(&&*keyword);
         if is_map { map(rest).map(|map| map.name) } else { None }
     };
     Lines::new(bytes).filter_map(of_line).collect()
 }
+
+/// The keywords of heights that would move vertices, and of reflection maps.
+const DISPLACEMENTS: [&[u8]; 2] = [b"disp", b"map_disp"];
+const REFLECTIONS: [&[u8]; 2] = [b"refl", b"map_refl"];
 
 /// Returns the kind of a map, by its keyword in lower case.
 fn kind_of(keyword: &[u8]) -> Option<MapKind> {

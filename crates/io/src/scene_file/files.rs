@@ -43,8 +43,8 @@ impl Known {
     }
 }
 
-/// The loaded models, textures and panoramas of a scene file. A placeholder replaces each one that is missing
-/// or cannot be read.
+/// The loaded models, textures and panoramas of a scene file. A placeholder replaces each one that
+/// is missing or cannot be read.
 pub(super) struct Files {
     folder: PathBuf,
     models: BTreeMap<ModelKey, Shared<Model>>,
@@ -141,7 +141,7 @@ impl Files {
             }
             let place = self.place(path);
             let loaded = match examples::content(&place) {
-                Some(content) => panorama_of(&place, &content),
+                Some(content) => panorama_of(&place, &content, usize::MAX),
                 None => load_panorama(&place),
             };
             let loaded = loaded.map(Shared::new);

@@ -4,6 +4,7 @@
 use std::hash::{Hash, Hasher};
 
 use super::panorama::PlacedPanorama;
+
 use marraztu_core::base::Shared;
 use marraztu_core::scene::{Reflection, Texture};
 
@@ -39,8 +40,16 @@ pub(crate) struct SurfaceRays {
     pub(crate) map: Option<Shared<Texture>>,
     /// Whether the surface is closed. Light passes through an open one unbent.
     pub(crate) is_closed: bool,
-    /// What is mirrored in place of the background, and whether nothing else is.
-    pub(crate) environment: Option<(PlacedPanorama, bool)>,
+    /// What is mirrored in place of the background.
+    pub(crate) environment: Option<MirroredPanorama>,
+}
+
+/// The environment of a material.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct MirroredPanorama {
+    pub(crate) panorama: PlacedPanorama,
+    /// Whether nothing else is mirrored.
+    pub(crate) is_alone: bool,
 }
 
 impl SurfaceRays {
@@ -171,7 +180,7 @@ impl Extras {
         let Self { emission, ambient, specular, exponent, bump, rays } = self;
         let rays = rays.as_ref().map(|it| {
             let around = it.environment.as_ref();
-            let around = around.map(|(panorama, is_alone)| (panorama.address(), *is_alone));
+            let around = around.map(|it| (it.panorama.address(), it.is_alone));
             (it.numbers().map(f64::to_bits), address(&it.map), around)
         });
         let glow = |glow: &Option<Glow>| {

@@ -160,7 +160,8 @@ impl FramePlan {
     }
 
     /// Returns whether any surface mirrors or refracts.
-    pub(crate) fn casts_rays(&self) -> bool {
+    #[must_use]
+    pub fn casts_rays(&self) -> bool {
         let casts = |pipeline: &Pipeline| match pipeline {
             Pipeline::Shaded(shaded) => shaded.extras.rays.is_some(),
             Pipeline::Flat(_) => false,

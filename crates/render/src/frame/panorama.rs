@@ -12,8 +12,8 @@ use marraztu_core::scene::{Moments, Panorama, PanoramaLight, SkyPanorama};
 /// The panorama of a sky that shines.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct PlacedPanorama {
-    /// The number of the light.
-    pub(crate) light: u32,
+    /// The number of the light; `None` for the environment of a material.
+    pub(crate) light: Option<u32>,
     panorama: Shared<Panorama>,
     /// The rotation from world space to the picture.
     picture_from_world: DMat3,
@@ -22,7 +22,7 @@ pub(crate) struct PlacedPanorama {
     /// The factors of its light.
     factor: [f64; 3],
     /// Whether light is computed in linear values.
-    pub(crate) is_linear: bool,
+    is_linear: bool,
     /// Whether it is the background.
     pub(crate) is_shown: bool,
 }
@@ -30,7 +30,7 @@ pub(crate) struct PlacedPanorama {
 impl PlacedPanorama {
     pub(crate) fn new(
         sky: &SkyPanorama,
-        (light, factor): (u32, [f64; 3]),
+        (light, factor): (Option<u32>, [f64; 3]),
         view_from_world: DMat4,
         is_linear: bool,
     ) -> Self {
@@ -128,10 +128,7 @@ impl FramePlan {
             let is_linear = self.shading_mode().is_linear();
             return if is_linear { background.map(linear) } else { background };
         }
-        self.panoramas.iter().fold([0.0; 3], |sum, panorama| {
-            let light = panorama.seen(towards, width);
-            std::array::from_fn(|i| sum[i] + light[i])
-        })
+        light_of(self.panoramas.iter(), towards, width)
     }
 
     /// Returns the size of a pixel in view space at the distance 1, or anywhere without
@@ -139,4 +136,16 @@ impl FramePlan {
     pub(crate) fn pixel_size(&self) -> f64 {
         2.0 / (self.viewport.height * self.clip_from_view.y_axis.y)
     }
+}
+
+/// Returns the light of several panoramas from a direction in view space, over an angle in radians.
+pub(crate) fn light_of<'a>(
+    panoramas: impl Iterator<Item = &'a PlacedPanorama>,
+    towards: DVec3,
+    width: f64,
+) -> [f64; 3] {
+    panoramas.fold([0.0; 3], |sum, panorama| {
+        let light = panorama.seen(towards, width);
+        std::array::from_fn(|i| sum[i] + light[i])
+    })
 }

@@ -173,11 +173,6 @@ impl Shadows {
         self.are_cast() && (0_u32..).zip(&self.sources).any(|(light, _)| self.radius(light) > 0.0)
     }
 
-    /// Returns whether single rays are traced: for lights with an extent, and through glass.
-    pub(crate) fn are_searched(&self) -> bool {
-        self.are_soft() || self.casters.iter().any(Caster::filters)
-    }
-
     /// Returns whether any of these lights casts shadows.
     pub(crate) fn any_of(&self, stages: &[Stage]) -> bool {
         self.are_cast() && stages.iter().any(|stage| self.source(stage.light).is_some())
@@ -202,7 +197,7 @@ impl Shadows {
 
     /// Computes what deciding shadows by a method reads of the meshes.
     pub(crate) fn prepare(&self, method: ShadowMethod) {
-        let is_searched = self.are_searched();
+        let is_searched = self.are_soft();
         for caster in &self.casters {
             let mesh = &caster.model.mesh;
             // Rays need the BVH; maps are rasterised in draw order.
@@ -211,7 +206,7 @@ impl Shadows {
                 Some(_) => _ = mesh.draw_order(),
             }
             // Single rays ask for the corners of a triangle.
-            if is_searched {
+            if is_searched || caster.filters() {
                 _ = mesh.draw_order();
             }
             // Both look up the part of a triangle by its polygon.

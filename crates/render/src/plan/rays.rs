@@ -5,7 +5,7 @@ use super::planning::{Ground, Planner, Planning};
 use super::shadows::{LEAST_OF_RAYS, light_samples};
 use super::uses::Notes;
 use crate::frame::FramePlan;
-use crate::frame::extras::SurfaceRays;
+use crate::frame::extras::{MirroredPanorama, SurfaceRays};
 use crate::frame::panorama::PlacedPanorama;
 use crate::lights::PhongMaterial;
 use marraztu_core::accuracy::{Bounces, LightAt, Samples, Settings};
@@ -72,7 +72,8 @@ impl Planner<'_> {
                 let sky = SkyPanorama { panorama: panorama.clone(), turn: 0.0, is_shown: false };
                 let is_linear = plan.variants.are_linear();
                 let view = plan.view_from_world;
-                (PlacedPanorama::new(&sky, (u32::MAX, [1.0; 3]), view, is_linear), *is_alone)
+                let panorama = PlacedPanorama::new(&sky, (None, [1.0; 3]), view, is_linear);
+                MirroredPanorama { panorama, is_alone: *is_alone }
             }),
         };
         (rays.reflects() || rays.transmits()).then_some(rays)

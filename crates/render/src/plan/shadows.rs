@@ -115,10 +115,11 @@ fn note(shining: &Shining, on: Option<Thing>, state: EffectState) -> EffectUse {
 impl Planner<'_> {
     /// Returns the caster of a part of an object. `None` if the part is not drawn.
     fn caster_part(&self, object: &Object, part: u32) -> Option<CasterPart> {
-        let look = object.part_look(part);
+        let mut look = object.part_look(part);
+        self.settle_transmission(object, &mut look);
         let filter = self.filter(object, &look);
         // Below one half, even opaque texels fail the alpha test.
-        if !object.shows_part(part) || look.opacity < 0.5 && filter.is_none() {
+        if !object.shows_part(part) || look.opacity < 0.5 {
             return None;
         }
         Some(CasterPart { holes: holes(object, &look), filter })

@@ -60,10 +60,9 @@ pub(super) fn view_lights(
             (true, true) => color.factors().map(|x| color::linear(x) * factor),
         };
         let color = shine(light.color);
-        let panorama = light
-            .kind
-            .panorama()
-            .map(|sky| PlacedPanorama::new(sky, (index, color), observer.view_from_world, linear));
+        let panorama = light.kind.panorama().map(|sky| {
+            PlacedPanorama::new(sky, (Some(index), color), observer.view_from_world, linear)
+        });
         into.plan.lights.push(ViewLight {
             color,
             ground: match light.kind {
@@ -77,7 +76,8 @@ pub(super) fn view_lights(
             cos_half_aperture: source.cos_half_aperture,
             exponent: source.exponent.min(LARGEST),
         });
-        into.plan.panoramas.extend(panorama.filter(|_| shines));
+        // A black sky is left out, and the background is seen.
+        into.plan.panoramas.extend(panorama.filter(|_| shines && color != [0.0; 3]));
         shining.push(Shining {
             id,
             name: light.name.clone(),

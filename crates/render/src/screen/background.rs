@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::coverage::SUBPIXELS;
-use crate::frame::panorama::PlacedPanorama;
+use crate::frame::panorama::light_of;
 use crate::frame::{Eye, FramePlan};
 use marraztu_core::base::color::{Color, byte, encoded};
 
@@ -12,17 +12,17 @@ use marraztu_core::base::color::{Color, byte, encoded};
 pub(crate) enum Background<'a> {
     /// The same everywhere.
     Even(Color),
-    /// A panorama, in the picture of a plan.
-    Panorama(&'a PlacedPanorama, &'a FramePlan),
+    /// The panoramas of a plan that are shown, added up.
+    Panoramas(&'a FramePlan),
 }
 
 impl FramePlan {
     /// Returns what the picture shows behind all surfaces.
     #[inline]
     pub(crate) fn behind(&self) -> Background<'_> {
-        match self.panoramas.iter().find(|panorama| panorama.is_shown) {
-            Some(panorama) => Background::Panorama(panorama, self),
-            None => Background::Even(self.background),
+        match self.panoramas.iter().any(|panorama| panorama.is_shown) {
+            true => Background::Panoramas(self),
+            false => Background::Even(self.background),
         }
     }
 
@@ -32,8 +32,10 @@ impl FramePlan {
         if self.eye == Eye::Parallel {
             return DVec3::NEG_Z;
         }
-        let within =
-            |at: i32, shift: i32| f64::from(at) + 0.5 + f64::from(shift) / f64::from(SUBPIXELS);
+        // All samples of a pixel show the background in its middle; windows shift by whole pixels.
+        let within = |at: i32, shift: i32| {
+            f64::from(at) + 0.5 + f64::from((shift + SUBPIXELS / 2).div_euclid(SUBPIXELS))
+        };
         let right = 2.0 * within(x, self.shift[0]) / self.viewport.width - 1.0;
         let up = 1.0 - 2.0 * within(y, self.shift[1]) / self.viewport.height;
         // At the distance 1, w is 1.
@@ -49,7 +51,7 @@ impl Background<'_> {
     pub(crate) const fn even(&self) -> Option<Color> {
         match self {
             Self::Even(color) => Some(*color),
-            Self::Panorama(..) => None,
+            Self::Panoramas(_) => None,
         }
     }
 
@@ -58,19 +60,21 @@ impl Background<'_> {
     pub(crate) fn at(&self, pixel: [i32; 2]) -> [u8; 4] {
         match self {
             Self::Even(color) => color.opaque(),
-            Self::Panorama(panorama, plan) => panorama_at(panorama, plan, pixel),
+            Self::Panoramas(plan) => panoramas_at(plan, pixel),
         }
     }
 }
 
-fn panorama_at(panorama: &PlacedPanorama, plan: &FramePlan, pixel: [i32; 2]) -> [u8; 4] {
+fn panoramas_at(plan: &FramePlan, pixel: [i32; 2]) -> [u8; 4] {
     let towards = plan.direction_through(pixel);
     // A pixel beside the axis is seen at a smaller angle, and in parallel at none.
     let width = match plan.eye {
         Eye::Point => plan.pixel_size() / towards.length_squared(),
         Eye::Parallel => 0.0,
     };
-    let light = panorama.seen(towards, width);
-    let [r, g, b] = if panorama.is_linear { light.map(encoded) } else { light }.map(byte);
+    let shown = plan.panoramas.iter().filter(|panorama| panorama.is_shown);
+    let light = light_of(shown, towards, width);
+    let is_linear = plan.shading_mode().is_linear();
+    let [r, g, b] = if is_linear { light.map(encoded) } else { light }.map(byte);
     [r, g, b, u8::MAX]
 }

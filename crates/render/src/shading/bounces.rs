@@ -60,15 +60,23 @@ struct Branch {
     weight: [f64; 3],
     /// The index of the fragment.
     target: usize,
-    /// The pipeline of the last mirror with an environment of its own, and whether nothing else is
-    /// seen in it.
-    environment: Option<(u32, bool)>,
+    /// The environment of the mirror that it comes from, if that has one of its own.
+    environment: Option<OwnEnvironment>,
     cone: Cone,
     /// The number of mirrors and refractions on its way.
     bounces: u32,
     /// The number of surfaces that it has passed through unbent since then.
     layers: u32,
     media: Media,
+}
+
+/// The environment of a mirror.
+#[derive(Clone, Copy, Debug)]
+struct OwnEnvironment {
+    /// The pipeline that holds it, in the plan of the surroundings.
+    pipeline: u32,
+    /// Whether nothing else is seen.
+    is_alone: bool,
 }
 
 /// The width of a ray at its start, and its growth per unit of distance.
@@ -285,7 +293,7 @@ impl<T: ShadingNumber> Bounces<T> {
         let stops = |hit: &Hit| surroundings.stops(hit);
         dispatch!(around.context.level, simd => for branch in &*branches {
             let hit = match branch.environment {
-                Some((_, true)) => None,
+                Some(OwnEnvironment { is_alone: true, .. }) => None,
                 _ => surroundings.things.nearest(simd, &branch.ray, &stops, stack),
             };
             met.push(hit.map(|hit| {
@@ -391,14 +399,14 @@ impl Branch {
     /// Returns the light of the ray if it meets nothing.
     fn light_behind(&self, plan: &FramePlan) -> [f64; 3] {
         let (towards, width) = (self.ray.towards, self.cone.spread.abs());
-        let environment = self.environment.and_then(|(pipeline, _)| {
+        let environment = self.environment.and_then(|OwnEnvironment { pipeline, .. }| {
             let Pipeline::Shaded(shaded) = plan.pipelines.get(pipeline as usize)? else {
                 return None;
             };
             shaded.extras.rays.as_ref()?.environment.as_ref()
         });
         match environment {
-            Some((panorama, _)) => panorama.seen(towards, width),
+            Some(it) => it.panorama.seen(towards, width),
             None => plan.light_behind(towards, width),
         }
     }
@@ -447,7 +455,9 @@ fn send_on(it: &Sender<'_>, branch: &Branch, to: &mut Vec<Branch>) {
     let bend = curvature(&it.corners, it.draw, (it.own.first, it.is_front));
     let Cone { width, spread } = branch.cone;
     let from = it.position;
-    let environment = it.rays.environment.as_ref().map(|(_, is_alone)| (it.pipeline, *is_alone));
+    let environment = it.rays.environment.as_ref();
+    let environment =
+        environment.map(|own| OwnEnvironment { pipeline: it.pipeline, is_alone: own.is_alone });
     let sent = |towards: DVec3, spread: f64, share: [f64; 3], media: Media| Branch {
         ray: Ray { from, towards, own: Some(it.own) },
         weight: std::array::from_fn(|i| branch.weight[i] * share[i]),

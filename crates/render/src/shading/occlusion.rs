@@ -1,7 +1,8 @@
 //! Occlusion of the sky: the part of it that each point sees.
 //!
-//! Directions are sampled around the normal, and rays look for surfaces in them. The light of the whole sky is known exactly, so it is multiplied by the
-//! fraction of the samples' light that arrives. With one colour this is ambient occlusion.
+//! Directions are sampled around the normal, and rays look for surfaces in them. The light of the
+//! whole sky is known exactly, so it is multiplied by the fraction of the samples' light that
+//! arrives. With one colour this is ambient occlusion.
 //!
 //! Zhukov, Iones and Kronin, "An Ambient Light Illumination Model", 1998; Landis,
 //! "Production-Ready Global Illumination", SIGGRAPH course notes, 2002.
@@ -60,10 +61,12 @@ pub(super) fn add_sky<T: ShadingNumber>(
             }
         }
     }
+    // Where no sample finds the light of a panorama, what its polynomial leaves is an error.
+    let unseen = if sky.panorama.is_some() { 0.0 } else { 1.0 };
     for i in Bits(reached) {
         for channel in 0..3 {
             let (all, seen) = (all[i][channel], seen[i][channel]);
-            let share = if all > 0.0 { seen / all } else { 1.0 };
+            let share = if all > 0.0 { seen / all } else { unseen };
             let own = batch.diffuse[channel][i] - before[channel][i];
             batch.diffuse[channel][i] = before[channel][i] + own * T::from_f64(share);
         }

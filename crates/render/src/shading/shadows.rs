@@ -92,7 +92,7 @@ impl<'a> BatchShadows<'a> {
     /// Returns the fraction of a light that passes through glass on its way to positions of a mask;
     /// `None` if there is none.
     fn filtered(&mut self, level: Level, light: DVec3, mask: u64) -> Option<Shares> {
-        if !self.tracer.has_filters() {
+        if !self.tracer.has_glass() {
             return None;
         }
         self.place();

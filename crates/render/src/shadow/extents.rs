@@ -12,7 +12,7 @@ pub(crate) struct Sky<'a> {
     /// The colours above the horizon and below it.
     pub(super) colors: [[f64; 3]; 2],
     /// The panorama, in place of the colours.
-    pub(super) panorama: Option<&'a PlacedPanorama>,
+    pub(crate) panorama: Option<&'a PlacedPanorama>,
     /// The number of the light.
     pub(super) light: u32,
     /// The number of samples at each point.

@@ -8,6 +8,7 @@ use crate::accel::Accelerated as _;
 use fearless_simd::{Level, Simd};
 use glam::{DMat3, DMat4, DVec3};
 
+use self::filters::Glass;
 use super::ball_light::{BallLight, LightSample};
 use super::boxes::world_pad;
 use super::extents::{Sky, SkyAbove, SoftLight};
@@ -51,14 +52,14 @@ pub(crate) struct Tracer<'a> {
     /// The cached shadows, if shadows are cached.
     known: Option<&'a KnownShadows>,
     filter: Filter,
-    /// The casters for single rays, if any light has an extent or passes through a caster.
+    /// The casters for single rays, if any light has an extent.
     things: Things<'a>,
     /// Each light, if it has an extent.
     soft: Vec<Option<SoftLight>>,
     /// Each light, if it is a sky.
     skies: Vec<Option<Sky<'a>>>,
-    /// Whether light passes through any caster.
-    filters: bool,
+    /// The casters that let light pass, if there are any.
+    glass: Option<Glass<'a>>,
     view_from_world: DMat3,
 }
 
@@ -102,7 +103,10 @@ impl<'a> Tracer<'a> {
             numbered.map(|(index, placed)| (placed.caster.item, index)).collect();
         let of_draws = plan.draws.iter().map(|draw| of_items.get(&draw.item).copied()).collect();
         let tracer = Self { of_draws, ..tracer };
-        Some(if plan.shadows.are_searched() { tracer.with_extents(plan) } else { tracer })
+        let tracer = if plan.shadows.are_soft() { tracer.with_extents(plan) } else { tracer };
+        // Maps know no colours: light passes through glass undimmed.
+        let knows_colors = plan.variants.shadow_method.map().is_none();
+        Some(if knows_colors { tracer.with_glass() } else { tracer })
     }
 
     /// Returns the distance of the suns of a frame.
@@ -138,8 +142,7 @@ impl<'a> Tracer<'a> {
             things: Things::default(),
             soft: Vec::new(),
             skies: Vec::new(),
-            // Maps know no colours: light passes through glass undimmed.
-            filters: method.map().is_none() && shadows.casters.iter().any(Caster::filters),
+            glass: None,
             view_from_world: DMat3::IDENTITY,
         }
     }
@@ -161,7 +164,7 @@ impl<'a> Tracer<'a> {
             let own = &plan.lights[light as usize];
             let is_sky =
                 *source == Some(ShadowSource::Everywhere) && plan.shadows.radius(light) > 0.0;
-            let panorama = plan.panoramas.iter().find(|panorama| panorama.light == light);
+            let panorama = plan.panoramas.iter().find(|panorama| panorama.light == Some(light));
             is_sky.then_some(Sky { colors: [own.color, own.ground], panorama, light, samples })
         };
         self.skies = (0_u32..).zip(&plan.shadows.sources).map(sky).collect();

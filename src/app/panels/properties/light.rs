@@ -208,7 +208,7 @@ impl Shown<'_> {
         let hint = "Turns the panorama about the vertical, anticlockwise seen from above";
         let number = Number::new("Turn", hint).speed(1.0).range(-360.0..=360.0).suffix(" deg");
         if let Some((turn, gesture)) = number_row(ui, "Turn", number, *turn) {
-            self.set(requests, "Turn", gesture, |light| of_sky(light, |own| own.turn = turn));
+            self.set(requests, "Turn of", gesture, |light| of_sky(light, |own| own.turn = turn));
         }
         let hint = "Shows the panorama behind everything; mirrors show it in any case";
         let switch = Switch::new("Background", *is_shown).ui(ui);

@@ -202,6 +202,7 @@ fn differing(scene: &Scene, first: ItemId, other: ItemId) -> Vec<&'static str> {
             let cone = |light: &Light| -> Vec<f64> {
                 light.kind.numbers().map(|(_, number)| number).collect()
             };
+            let (sky, others) = (a.kind.panorama(), b.kind.panorama());
             vec![
                 (a.on != b.on, "On"),
                 (a.shadows != b.shadows, "Shadows"),
@@ -209,6 +210,9 @@ fn differing(scene: &Scene, first: ItemId, other: ItemId) -> Vec<&'static str> {
                 (a.attenuation != b.attenuation, "Attenuation"),
                 (cone(a) != cone(b), "Cone"),
                 (!same_owner(a.kind.owner(), b.kind.owner()), "Owner"),
+                (sky.map(|it| &it.panorama) != others.map(|it| &it.panorama), "Panorama"),
+                (sky.map(|it| it.turn) != others.map(|it| it.turn), "Turn"),
+                (sky.map(|it| it.is_shown) != others.map(|it| it.is_shown), "Background"),
                 (a.kind != b.kind, "Place"),
             ]
         }
