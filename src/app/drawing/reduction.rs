@@ -39,7 +39,7 @@ pub struct Reduction {
     pub nearest_texels: bool,
     /// Lighting per vertex rather than per pixel.
     pub vertex_light: bool,
-    /// One ray to each light, none to the sky, and one bounce.
+    /// One ray to each light, none to the sky, and two bounces: into glass and out of it.
     pub few_rays: bool,
     /// Fewer pixels, each shown as a square.
     pub shrink: Shrink,
@@ -110,10 +110,10 @@ impl Reduction {
         };
         let filter = if self.nearest_texels { Filter::Nearest } else { settings.filter };
         let samples = if self.one_sample { Samples::One } else { settings.samples };
-        let (light_samples, bounces) = match self.few_rays {
-            true if settings.bounces == Bounces::None => (LightSamples::One, Bounces::None),
-            true => (LightSamples::One, Bounces::One),
-            false => (settings.light_samples, settings.bounces),
+        let light_samples = if self.few_rays { LightSamples::One } else { settings.light_samples };
+        let bounces = match settings.bounces {
+            Bounces::Four | Bounces::Eight if self.few_rays => Bounces::Two,
+            bounces => bounces,
         };
         let side = |pixels: usize| pixels.div_ceil(self.shrink.factor());
         let size = Size::new(side(size.width), side(size.height));
@@ -149,8 +149,8 @@ impl Applicable {
     /// Removes the parts of a reduction that have no effect on this picture.
     pub(crate) fn limited(self, reduction: Reduction) -> Reduction {
         let Settings { light, filter, samples, light_samples, bounces, .. } = self.settings;
-        let has_few =
-            light_samples == LightSamples::One && matches!(bounces, Bounces::None | Bounces::One);
+        let has_few = light_samples == LightSamples::One
+            && matches!(bounces, Bounces::None | Bounces::One | Bounces::Two);
         Reduction {
             one_sample: reduction.one_sample && samples != Samples::One,
             vertex_light: reduction.vertex_light
@@ -192,7 +192,7 @@ mod tests {
         let with_rays = Applicable { settings, textured: false, casts_rays: true };
         assert_eq!(with_rays.reductions().count(), 11);
         let (few, _) = Reduction::PREVIEW.applied(settings, Size::new(8, 8));
-        assert_eq!((few.light_samples, few.bounces), (LightSamples::One, Bounces::One));
+        assert_eq!((few.light_samples, few.bounces), (LightSamples::One, Bounces::Two));
         let limited = Applicable { settings: few, ..with_rays }.limited(Reduction::PREVIEW);
         assert_eq!(limited, Reduction::NONE, "nothing is left to reduce");
         let flat = Settings { light: LightAt::Face, ..settings };
