@@ -5,12 +5,8 @@ use super::hits::PACK;
 /// The largest number of pixels covered by sixteen triangles.
 pub(super) const MOST: usize = PACK * 16 * 16;
 
-/// The number of bits below the sample bits in a listed pixel.
-pub(super) const SAMPLES: u32 = 12;
-
 /// The pixels covered by sixteen triangles. From the lowest bit, an entry has 4 bits for the lane,
-/// 4 for the column and 4 for the row in the triangle's box, and, with several samples, a bit for
-/// each covered sample. There is room for sixteen more.
+/// 4 for the column and 4 for the row in the triangle's box. There is room for sixteen more.
 #[derive(Debug)]
 pub(crate) struct Covered {
     pub(super) pixels: [i32; MOST + PACK],

@@ -5,9 +5,6 @@
 
 use fearless_simd::{Bytes as _, Simd, SimdBase as _, f64x8, u32x16};
 
-/// The number of samples whose entries are moved together.
-pub(crate) const FOUR: usize = 4;
-
 /// Returns the entry of a primitive with a key of the depth format.
 #[inline(always)]
 pub(crate) fn word(key: u32, number: u32) -> u64 {
@@ -26,33 +23,6 @@ pub(crate) fn put_words<S: Simd>(keys: u32x16<S>, numbers: u32x16<S>, to: &mut [
     let to: &mut [f64] = bytemuck::cast_slice_mut(to);
     first.store_slice(&mut to[..8]);
     last.store_slice(&mut to[8..16]);
-}
-
-/// Stores four samples of sixteen pixels, with the entries of a pixel's samples side by side.
-#[inline(always)]
-pub(crate) fn put_samples<S: Simd>(
-    keys: [u32x16<S>; FOUR],
-    numbers: [u32x16<S>; FOUR],
-    to: &mut [u64],
-) {
-    let [a, b, c, d] = [
-        halves(keys[0], numbers[0]),
-        halves(keys[1], numbers[1]),
-        halves(keys[2], numbers[2]),
-        halves(keys[3], numbers[3]),
-    ];
-    let to: &mut [f64] = bytemuck::cast_slice_mut(to);
-    // A 4 x 8 transpose in registers.
-    for half in 0..2 {
-        let (even_low, even_high) = a[half].interleave(c[half]);
-        let (odd_low, odd_high) = b[half].interleave(d[half]);
-        let (first, second) = even_low.interleave(odd_low);
-        let (third, fourth) = even_high.interleave(odd_high);
-        for (eight, at) in [first, second, third, fourth].into_iter().zip((32 * half..).step_by(8))
-        {
-            eight.store_slice(&mut to[at..at + 8]);
-        }
-    }
 }
 
 /// Returns the first eight and the last eight of sixteen entries.

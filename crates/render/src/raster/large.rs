@@ -6,8 +6,8 @@
 //! depths are needed.
 
 use fearless_simd::{
-    Select as _, Simd, SimdBase as _, SimdFloat as _, SimdInt as _, SimdMask as _, SimdNarrow as _,
-    f32x16, f64x8, i64x8, mask32x16,
+    Simd, SimdBase as _, SimdFloat as _, SimdInt as _, SimdMask as _, SimdNarrow as _, f32x16,
+    f64x8, i64x8, mask32x16,
 };
 
 use super::bins::LargeTriangle;
@@ -16,6 +16,7 @@ use super::visibility_buffer::{in_front, put_rows};
 use crate::screen::coverage::{PixelBox, Triangle};
 use crate::screen::sample_positions::SamplePositions;
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS};
+use crate::simd::Real;
 use marraztu_core::base::math::each;
 
 /// The bound of rounding for depths in a block, beyond the depths at its corners: a few steps of
@@ -286,8 +287,7 @@ impl Large {
     fn clamped<S: Simd>(&self, depth: f32x16<S>) -> f32x16<S> {
         let (low, high) =
             (f32x16::splat(depth.simd, self.low), f32x16::splat(depth.simd, self.high));
-        let depth = depth.simd_gt(low).select(depth, low);
-        depth.simd_lt(high).select(depth, high)
+        Real::min(Real::max(depth, low), high)
     }
 
     #[inline(always)]

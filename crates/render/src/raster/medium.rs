@@ -4,9 +4,7 @@
 //! 32 bits, so sixteen pixels or blocks are tested at once. Depths are computed from edge functions
 //! in f64, which holds these integers exactly.
 
-use fearless_simd::{
-    Select as _, Simd, SimdBase as _, SimdMask as _, SimdNarrow as _, f32x16, f64x8, i32x16,
-};
+use fearless_simd::{Simd, SimdBase as _, SimdMask as _, SimdNarrow as _, f32x16, f64x8, i32x16};
 
 use super::bins::LargeTriangle;
 use super::depth_format::Format;
@@ -15,7 +13,7 @@ use super::visibility_buffer::put_rows;
 use crate::screen::coverage::{PixelBox, SUBPIXELS};
 use crate::screen::sample_positions::SamplePositions;
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE};
-use crate::simd::in_f64;
+use crate::simd::{Real, in_f64};
 use marraztu_core::base::math::each;
 
 /// The largest side of the bounding box, in pixels.
@@ -232,8 +230,7 @@ impl<S: Simd> Medium<S> {
         let depth = upper.narrow(self.depth_at(second[1], third[1]));
         // Rounding must not move a depth beyond the depths of the corners.
         let (low, high) = (f32x16::splat(simd, self.low), f32x16::splat(simd, self.high));
-        let depth = depth.simd_gt(low).select(depth, low);
-        depth.simd_lt(high).select(depth, high)
+        Real::min(Real::max(depth, low), high)
     }
 
     /// Computes the depths of a row, before clamping to the corners' depths.

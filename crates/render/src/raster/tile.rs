@@ -27,7 +27,7 @@ use self::scratch::{Cutouts, SmallTriangles};
 use super::bins::Bins;
 use super::block_triangle::BlockTriangle;
 use super::depth_format::{Format, depths_between};
-use super::entries::{FOUR, word};
+use super::entries::word;
 use super::geometry::ScreenGeometry;
 use super::lines;
 use super::visibility_buffer::{Plane, depths_of};
@@ -127,7 +127,7 @@ impl Visibility {
         // With one sample, small triangles are hits already.
         if N > 1 {
             dispatch!(level, simd => match self.sample_positions.count() {
-                FOUR => self.draw_small::<_, FOUR>(simd, frame.bins(), tile),
+                4 => self.draw_small::<_, 4>(simd, frame.bins(), tile),
                 _ => self.draw_small::<_, MANY>(simd, frame.bins(), tile),
             });
         }

@@ -24,8 +24,10 @@ const FOUR: usize = 4;
 /// The positions of one pass's samples in every pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct SamplePositions {
-    /// Offsets from the centre, in subpixels; all 0 if the centre is the only sample.
-    shifts: [[i32; 2]; MANY],
+    /// The offsets of sixteen neighbouring entries of the visibility buffer from the centre of the
+    /// first pixel, in subpixels, along x and along y; all 0 if the centre is the only sample. The
+    /// first `count` are those of a pixel's samples.
+    entries: [[i32; MANY]; 2],
     count: usize,
     /// The smallest and largest offset on each axis.
     least: [i32; 2],
@@ -41,7 +43,7 @@ impl Default for SamplePositions {
 #[expect(clippy::cast_possible_truncation, reason = "at most sixteen samples")]
 impl SamplePositions {
     /// A single sample at the centre.
-    const MIDDLE: Self = Self { shifts: [[0; 2]; MANY], count: 1, least: [0; 2], most: [0; 2] };
+    const MIDDLE: Self = Self { entries: [[0; MANY]; 2], count: 1, least: [0; 2], most: [0; 2] };
 
     /// Creates a pass of groups of four samples, given in `parts` of a pixel from the upper left
     /// corner.
@@ -49,11 +51,14 @@ impl SamplePositions {
         let count = FOUR * groups.len();
         let mut positions = Self { least: [128; 2], most: [-128; 2], count, ..Self::MIDDLE };
         let mut i = 0;
-        while i < 2 * count {
-            let (sample, axis) = (i / 2, i % 2);
+        while i < 2 * MANY {
+            let (entry, axis) = (i / 2, i % 2);
+            let (pixel, sample) = (entry / count, entry % count);
             // Positions count from the upper left corner; the centre is at 128 subpixels.
             let shift = groups[sample / FOUR][sample % FOUR][axis] * (256 / parts) - 128;
-            positions.shifts[sample][axis] = shift;
+            // Neighbouring pixels are on the right.
+            let from_first = if axis == 0 { pixel as i32 * SUBPIXELS } else { 0 };
+            positions.entries[axis][entry] = shift + from_first;
             if shift < positions.least[axis] {
                 positions.least[axis] = shift;
             }
@@ -91,7 +96,7 @@ impl SamplePositions {
     /// samples.
     #[inline(always)]
     pub(crate) const fn shift<const N: usize>(&self, i: usize) -> [i32; 2] {
-        if N == 1 { [0; 2] } else { self.shifts[i % MANY] }
+        if N == 1 { [0; 2] } else { self.of_entry(i) }
     }
 
     /// Returns the number of neighbouring pixels of a row with sixteen samples together; for
@@ -112,16 +117,15 @@ impl SamplePositions {
     /// centre of their first pixel, in subpixels.
     #[inline(always)]
     pub(crate) const fn of_entry(&self, lane: usize) -> [i32; 2] {
-        let [x, y] = self.shifts[lane % self.count % MANY];
-        [x + (lane / self.count) as i32 * SUBPIXELS, y]
+        let [x, y] = &self.entries;
+        [x[lane % MANY], y[lane % MANY]]
     }
 
     /// Returns the offsets of sixteen entries, along x and along y. See [`Self::of_entry`].
     #[inline(always)]
     pub(crate) fn of_entries<S: Simd>(&self, simd: S) -> [i32x16<S>; 2] {
-        let all: [[i32; 2]; MANY] = std::array::from_fn(|lane| self.of_entry(lane));
-        let (x, y) = (all.map(|at| at[0]), all.map(|at| at[1]));
-        [i32x16::from_slice(simd, &x), i32x16::from_slice(simd, &y)]
+        let [x, y] = &self.entries;
+        [i32x16::from_slice(simd, x), i32x16::from_slice(simd, y)]
     }
 
     /// Returns the smallest and largest offset on each axis.
@@ -146,7 +150,7 @@ pub(crate) const fn passes(samples: Samples) -> &'static [SamplePositions] {
 pub(crate) fn shifts(samples: Samples) -> impl ExactSizeIterator<Item = [i32; 2]> {
     let passes = passes(samples);
     let count = passes[0].count();
-    (0..passes.len() * count).map(move |i| passes[i / count].shifts[i % count])
+    (0..passes.len() * count).map(move |i| passes[i / count].of_entry(i % count))
 }
 
 const QUARTERS: [SamplePositions; 1] =

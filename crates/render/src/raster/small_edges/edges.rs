@@ -74,6 +74,26 @@ pub(crate) trait Edges<S: Simd>: Copy {
     fn depths(&self, pixels: &Self::Pixels, at: (i32x16<S>, Option<&Self::Shift>)) -> f32x16<S>;
 }
 
+/// Edge functions that are also evaluated for one triangle at a time: in sixteen entries of the
+/// visibility buffer, which are the samples of neighbouring pixels of a row.
+pub(crate) trait SampledEdges<S: Simd>: Edges<S> {
+    /// An edge function of one triangle at one pixel.
+    type Value: Copy;
+    /// Sixteen triangles, one after the other.
+    type Each;
+
+    /// Returns the largest change of each edge function by an offset between these two.
+    fn most(&self, offsets: [[i32; 2]; 2]) -> Self::Shift;
+    /// Prepares the triangles for entries with these offsets, along x and along y.
+    fn each(&self, entries: [i32x16<S>; 2]) -> Self::Each;
+    /// Returns the edge function of corner `i` at some pixels: the lanes of their triangles, and
+    /// their distances from the first pixels of the boxes.
+    fn values(&self, i: usize, at: (i32x16<S>, [i32x16<S>; 2])) -> [Self::Value; 16];
+    /// Returns which entries a triangle covers, and its depths there, if these are the values of
+    /// its edge functions at the first pixel.
+    fn in_entries(of: &Self::Each, lane: usize, at: [Self::Value; 3]) -> (mask32x16<S>, f32x16<S>);
+}
+
 /// Depths in f32 at some pixels: their second and third edge functions, the depth of the first
 /// corner, and its growth with these functions.
 #[derive(Clone, Copy)]

@@ -3,7 +3,7 @@
 
 use fearless_simd::{Select as _, Simd, SimdBase as _, SimdInt as _, f32x16, i32x16, mask32x16};
 
-use super::edges::{Boxes, Corners, Edge, Edges, LinearDepths, Places};
+use super::edges::{Boxes, Corners, Edge, Edges, LinearDepths, Places, SampledEdges};
 use crate::screen::coverage::SUBPIXELS;
 use crate::simd::gather::of_lanes;
 use marraztu_core::base::math::each;
@@ -117,6 +117,70 @@ impl<S: Simd> Edges<S> for UsualEdges<S> {
             }
             None => pixels.at_pixels(),
         }
+    }
+}
+
+/// Sixteen triangles, to be drawn one after the other.
+pub(crate) struct EachUsual<S: Simd> {
+    /// The changes of the edge functions in sixteen entries.
+    gains: [[f32x16<S>; 3]; 16],
+    least: [[f32; 16]; 3],
+    gradients: [[f32; 16]; 3],
+}
+
+impl<S: Simd> SampledEdges<S> for UsualEdges<S> {
+    type Value = f32;
+    type Each = EachUsual<S>;
+
+    #[inline(always)]
+    fn most(&self, offsets: [[i32; 2]; 2]) -> Self::Shift {
+        let [a, b] = self.steps;
+        let [from, to] = offsets.map(|offset| offset.map(|by| by as f32 / SUBPIXELS as f32));
+        each(
+            [[a[0], b[0]], [a[1], b[1]], [a[2], b[2]]],
+            #[inline(always)]
+            |[a, b]| (a * from[0]).max(a * to[0]) + (b * from[1]).max(b * to[1]),
+        )
+    }
+
+    #[inline(always)]
+    fn each(&self, [x, y]: [i32x16<S>; 2]) -> Self::Each {
+        let subpixel = 1.0 / SUBPIXELS as f32;
+        let (x, y) = (x.to_float::<f32x16<S>>() * subpixel, y.to_float::<f32x16<S>>() * subpixel);
+        let [a, b] = &self.steps;
+        let (a, b) = (each(*a, <[f32; 16]>::from), each(*b, <[f32; 16]>::from));
+        let mut all = EachUsual {
+            gains: [[x; 3]; 16],
+            least: each(self.least, <[f32; 16]>::from),
+            gradients: each(self.gradients, <[f32; 16]>::from),
+        };
+        for (lane, gains) in all.gains.iter_mut().enumerate() {
+            *gains = [
+                x * a[0][lane] + y * b[0][lane],
+                x * a[1][lane] + y * b[1][lane],
+                x * a[2][lane] + y * b[2][lane],
+            ];
+        }
+        all
+    }
+
+    #[inline(always)]
+    fn values(&self, i: usize, (lanes, by): (i32x16<S>, [i32x16<S>; 2])) -> [f32; 16] {
+        self.function(i, (lanes, by, None)).into()
+    }
+
+    #[inline(always)]
+    fn in_entries(of: &Self::Each, lane: usize, at: [f32; 3]) -> (mask32x16<S>, f32x16<S>) {
+        let EachUsual { gains, least, gradients } = of;
+        let lane = lane % 16;
+        let [first, second, third] = gains[lane];
+        let [first, second, third] = [first + at[0], second + at[1], third + at[2]];
+        let covered = first.simd_ge(least[0][lane])
+            & second.simd_ge(least[1][lane])
+            & third.simd_ge(least[2][lane]);
+        // As in `LinearDepths`: the sums of edge functions are exact.
+        let [depth, to_second, to_third] = [0, 1, 2].map(|i| gradients[i][lane]);
+        (covered, second * to_second + depth + third * to_third)
     }
 }
 

@@ -6,7 +6,7 @@ use fearless_simd::{
     f32x16, f64x8, i32x16, mask32x16, u32x16,
 };
 
-use super::edges::{Boxes, Corners, Edge, Edges, LinearDepths, Places};
+use super::edges::{Boxes, Corners, Edge, Edges, LinearDepths, Places, SampledEdges};
 use crate::screen::coverage::{Grid, SUBPIXELS};
 use crate::simd::gather::{of_lanes, permute};
 use crate::simd::in_f64;
@@ -130,6 +130,75 @@ impl<S: Simd> Edges<S> for WholeEdges<S> {
     }
 }
 
+/// Sixteen triangles, to be drawn one after the other.
+pub(crate) struct EachWhole<S: Simd> {
+    /// The changes of the edge functions in sixteen entries.
+    gains: [[i32x16<S>; 3]; 16],
+    least: [[i32; 16]; 3],
+    depth: [f32; 16],
+    to_second: [f64; 16],
+    to_third: [f64; 16],
+}
+
+impl<S: Simd> SampledEdges<S> for WholeEdges<S> {
+    type Value = i32;
+    type Each = EachWhole<S>;
+
+    #[inline(always)]
+    fn most(&self, [from, to]: [[i32; 2]; 2]) -> Self::Shift {
+        let [a, b] = self.steps;
+        each(
+            [[a[0] >> 8, b[0] >> 8], [a[1] >> 8, b[1] >> 8], [a[2] >> 8, b[2] >> 8]],
+            #[inline(always)]
+            |[a, b]| (a * from[0]).max(a * to[0]) + (b * from[1]).max(b * to[1]),
+        )
+    }
+
+    #[inline(always)]
+    fn each(&self, [x, y]: [i32x16<S>; 2]) -> Self::Each {
+        let [a, b] = self.steps;
+        let (a, b) = (each(a, <[i32; 16]>::from), each(b, <[i32; 16]>::from));
+        let mut all = EachWhole {
+            gains: [[x; 3]; 16],
+            least: each(self.least, <[i32; 16]>::from),
+            depth: self.depth.into(),
+            to_second: in_order(self.to_second),
+            to_third: in_order(self.to_third),
+        };
+        for (lane, gains) in all.gains.iter_mut().enumerate() {
+            *gains = [
+                x * (a[0][lane] >> 8) + y * (b[0][lane] >> 8),
+                x * (a[1][lane] >> 8) + y * (b[1][lane] >> 8),
+                x * (a[2][lane] >> 8) + y * (b[2][lane] >> 8),
+            ];
+        }
+        all
+    }
+
+    #[inline(always)]
+    fn values(&self, i: usize, (lanes, by): (i32x16<S>, [i32x16<S>; 2])) -> [i32; 16] {
+        self.edge(i, (lanes, by, None)).into()
+    }
+
+    #[inline(always)]
+    fn in_entries(of: &Self::Each, lane: usize, at: [i32; 3]) -> (mask32x16<S>, f32x16<S>) {
+        let EachWhole { gains, least, depth, to_second, to_third } = of;
+        let lane = lane % 16;
+        let [first, second, third] = gains[lane];
+        let [first, second, third] = [first + at[0], second + at[1], third + at[2]];
+        let covered = first.simd_ge(least[0][lane])
+            & second.simd_ge(least[1][lane])
+            & third.simd_ge(least[2][lane]);
+        let (second, third) = (in_f64(second), in_f64(third));
+        let (depth, to_second, to_third) =
+            (f64::from(depth[lane]), to_second[lane], to_third[lane]);
+        // The same operations in the same order as in `medium`, for the same bits.
+        let low = second[0] * to_second + depth + third[0] * to_third;
+        let high = second[1] * to_second + depth + third[1] * to_third;
+        (covered, low.narrow(high))
+    }
+}
+
 /// Depths at some pixels: their second and third edge functions, the depth of the first corner, and
 /// its growth with these functions.
 #[derive(Clone, Copy)]
@@ -157,6 +226,16 @@ fn per_area<S: Simd>(from: f32x16<S>, to: f32x16<S>, area: [f64x8<S>; 2]) -> Dou
 fn doubles<S: Simd>([low, high]: Doubles<S>, lanes: i32x16<S>) -> [f64x8<S>; 2] {
     let (first, second) = permute(low, lanes).interleave(permute(high, lanes));
     [first.bitcast(), second.bitcast()]
+}
+
+/// Returns all numbers, lane by lane.
+#[inline(always)]
+fn in_order<S: Simd>([low, high]: Doubles<S>) -> [f64; 16] {
+    let (first, second) = low.interleave(high);
+    let mut all = [0.0; 16];
+    first.bitcast::<f64x8<S>>().store_slice(&mut all[..8]);
+    second.bitcast::<f64x8<S>>().store_slice(&mut all[8..]);
+    all
 }
 
 /// Integer edge functions on the fine grid. A step by one pixel adds a multiple of 4096 to an edge

@@ -1,27 +1,22 @@
 //! Draws the small triangles that wait for a tile, with several samples per pixel.
 //!
-//! The entries of four samples of a pixel are compared at once.
+//! The entries of sixteen samples are compared at once: those of a pixel, or of four neighbours.
 
-use fearless_simd::{Select as _, Simd, SimdBase as _, SimdMask as _, f64x4, mask32x16, u32x16};
+use fearless_simd::{Simd, SimdMask as _, mask32x16};
 
 use super::Visibility;
 use super::scratch::SmallTriangles;
 use crate::raster::bins::Bins;
 use crate::raster::depth_format::Format;
-use crate::raster::entries::{FOUR, put_samples};
 use crate::raster::hits::PACK;
 use crate::raster::queue::Pack;
 use crate::raster::rule::{Rule, Usual};
-use crate::raster::small::SampledLanes;
-use crate::raster::small_edges::Edges;
+use crate::raster::small::Lanes;
+use crate::raster::small_edges::SampledEdges;
 use crate::raster::tile_queues::SIZES;
-use crate::raster::visibility_buffer::BACKGROUND;
+use crate::raster::visibility_buffer::put_rows;
 use crate::screen::sample_positions::MANY;
-use crate::screen::tiles::{BLOCK_PIXELS, PIXELS, TILE, lanes_place};
-
-/// The entries of sixteen pixels in four samples.
-#[repr(align(64))]
-struct Entries([u64; FOUR * PACK]);
+use crate::screen::tiles::BLOCK_PIXELS;
 
 /// The edge functions of all sizes but the last, and of the last size.
 type Most<S> = <Usual as Rule>::Edges<S>;
@@ -72,7 +67,7 @@ impl SmallTriangles {
     }
 
     #[inline(always)]
-    fn draw_size<S: Simd, E: Edges<S>, const N: usize>(
+    fn draw_size<S: Simd, E: SampledEdges<S>, const N: usize>(
         &mut self,
         simd: S,
         format: Format,
@@ -103,7 +98,7 @@ impl SmallTriangles {
 
     /// Draws the left-over triangles.
     #[inline(always)]
-    fn draw_rest<S: Simd, E: Edges<S>, const N: usize>(
+    fn draw_rest<S: Simd, E: SampledEdges<S>, const N: usize>(
         &mut self,
         simd: S,
         format: Format,
@@ -120,7 +115,7 @@ impl SmallTriangles {
     ///
     /// Compiled as a separate function because it is called from several places.
     #[inline(always)]
-    fn draw_pack<S: Simd, E: Edges<S>, const N: usize>(
+    fn draw_pack<S: Simd, E: SampledEdges<S>, const N: usize>(
         &mut self,
         format: Format,
         pack: &Pack<S>,
@@ -133,51 +128,28 @@ impl SmallTriangles {
     }
 
     #[inline(always)]
-    fn draw_pack_in<S: Simd, E: Edges<S>, const N: usize>(
+    #[expect(clippy::cast_possible_truncation, reason = "up to sixteen")]
+    fn draw_pack_in<S: Simd, E: SampledEdges<S>, const N: usize>(
         &mut self,
         format: Format,
         pack: &Pack<S>,
         into: &mut Visibility,
     ) {
         let simd = pack[0].simd;
-        let lanes = SampledLanes::<S, E, N>::new(pack, &into.sample_positions);
-        lanes.each_in(
+        let positions = into.sample_positions;
+        let across = (MANY / N) as i32;
+        Lanes::<S, E>::new(pack, (positions.reach::<N>(), across)).each_entries(
+            &positions,
             into.bounds,
             &mut self.covered,
             #[inline(always)]
-            |pixels, count| {
-                let place = lanes_place(pixels.x & (TILE - 1), pixels.y & (TILE - 1), (0, 1));
-                let places =
-                    <[i32; PACK]>::from(place).map(|place| place.cast_unsigned() as usize % PIXELS);
-                let places = &places[..count.min(PACK)];
-                for place in places {
-                    let block = place / BLOCK_PIXELS;
-                    if into.written >> block & 1 == 0 {
-                        into.write::<MANY>(simd.level(), block);
-                    }
+            |pixel, number, covered, depth| {
+                let block = pixel / BLOCK_PIXELS;
+                if into.written >> block & 1 == 0 {
+                    into.write::<MANY>(simd.level(), block);
                 }
-                // A sample that is not covered gets the background's entry, which never wins the
-                // depth test.
-                let (nothing, background) =
-                    (u32x16::splat(simd, 0), u32x16::splat(simd, BACKGROUND));
-                for first in (0..N).step_by(FOUR) {
-                    let (mut keys, mut numbers) = ([nothing; FOUR], [background; FOUR]);
-                    for i in 0..FOUR {
-                        let some = pixels.covered(first + i, count);
-                        let depth = lanes.depths(pixels, first + i);
-                        keys[i] = some.select(format.keys(depth), nothing);
-                        numbers[i] = some.select(pixels.number, background);
-                    }
-                    let mut new = Entries([0; FOUR * PACK]);
-                    put_samples(keys, numbers, &mut new.0);
-                    for (place, new) in places.iter().zip(new.0.as_chunks::<FOUR>().0) {
-                        // Entries are compared as f64: see `put_rows`.
-                        let new = f64x4::from_slice(simd, bytemuck::cast_slice(new));
-                        let old = &mut into.buffer.0[place * N + first..][..FOUR];
-                        let old = bytemuck::cast_slice_mut(old);
-                        new.max(f64x4::from_slice(simd, old)).store_slice(old);
-                    }
-                }
+                let entries = &mut into.buffer.0.as_chunks_mut().0[pixel * N / MANY];
+                put_rows(format, simd, covered, depth, number, entries);
             },
         );
     }

@@ -123,7 +123,7 @@ fn draw_bins(visibility: &mut Visibility, bins: &Bins, (tile, bounds): (usize, P
             visibility.draw_hits::<_, MANY>(simd, bins, tile);
             let bins = std::slice::from_ref(bins);
             match bins[0].sample_positions.count() {
-                FOUR => visibility.draw_small::<_, FOUR>(simd, bins, tile),
+                4 => visibility.draw_small::<_, 4>(simd, bins, tile),
                 _ => visibility.draw_small::<_, MANY>(simd, bins, tile),
             }
         }
