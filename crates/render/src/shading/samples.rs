@@ -1,6 +1,6 @@
 //! The samples of a block, compared, and the colours kept from earlier passes over a picture.
 
-use crate::simd::dispatch;
+use crate::simd::{Bits, dispatch};
 use fearless_simd::{Level, Simd, SimdBase as _, SimdMask as _, u32x16};
 
 use super::colors::{Colors, Sums};
@@ -40,7 +40,6 @@ impl Samples {
     /// whether each pixel shows a single primitive.
     pub(crate) fn compare(&mut self, level: Level, entries: &[u64], count: usize) -> bool {
         self.others.clear();
-        self.shares.fill(i32::try_from(count).unwrap_or(0));
         dispatch!(level, simd => match count {
             4 => self.compare_in::<_, 4>(simd, entries),
             _ => self.compare_in::<_, MANY>(simd, entries),
@@ -49,33 +48,30 @@ impl Samples {
     }
 
     #[inline(always)]
-    #[expect(clippy::cast_possible_truncation, reason = "the lower half of a word is the number")]
     fn compare_in<S: Simd, const N: usize>(&mut self, simd: S, entries: &[u64]) {
-        for (place, samples) in entries.as_chunks::<N>().0.iter().enumerate() {
-            let place = place % BLOCK_PIXELS;
+        let pixels: Option<&[_; BLOCK_PIXELS]> = entries.as_chunks::<N>().0.first_chunk();
+        let Some(pixels) = pixels else { return };
+        // The samples of each pixel that are not listed yet, and the pixels that have any.
+        let (mut left, mut next) = ([0; BLOCK_PIXELS], 0);
+        for (place, samples) in pixels.iter().enumerate() {
             self.first[place] = samples[0];
-            // Numbers differ in the bits that some samples have and others have not.
-            let mut differ = 0;
-            for sample in &samples[1..] {
-                differ |= sample ^ samples[0];
-            }
-            if differ as u32 != 0 {
-                self.list_others(simd, samples, place);
-            }
+            let same = alike(simd, samples, number_of(samples[0]));
+            self.shares[place] = same.count_ones().cast_signed();
+            left[place] = ((1 << N) - 1) & !same;
+            next |= u64::from(left[place] != 0) << place;
         }
-    }
-
-    /// Lists the primitives of a pixel that its first sample does not show.
-    #[inline(always)]
-    fn list_others<S: Simd, const N: usize>(&mut self, simd: S, samples: &[u64; N], place: usize) {
-        let same = alike(simd, samples, number_of(samples[0]));
-        self.shares[place] = same.count_ones().cast_signed();
-        let mut left = ((1 << N) - 1) & !same;
-        while left != 0 {
-            let number = number_of(samples[left.trailing_zeros() as usize % N]);
-            let same = alike(simd, samples, number);
-            self.others.push(Other { place, number, share: same.count_ones().cast_signed() });
-            left &= !same;
+        // All pixels' second primitives are listed before the third ones: the number of a pixel's
+        // primitives is unpredictable.
+        while next != 0 {
+            for place in Bits(std::mem::take(&mut next)) {
+                let place = place % BLOCK_PIXELS;
+                let samples = &pixels[place];
+                let number = number_of(samples[left[place].trailing_zeros() as usize % N]);
+                let same = alike(simd, samples, number);
+                self.others.push(Other { place, number, share: same.count_ones().cast_signed() });
+                left[place] &= !same;
+                next |= u64::from(left[place] != 0) << place;
+            }
         }
     }
 
@@ -213,8 +209,10 @@ mod tests {
                     }
                 }
             }
-            let got: Vec<_> =
+            let mut got: Vec<_> =
                 samples.others.iter().map(|it| (it.place, it.number, it.share)).collect();
+            // Places are listed in rounds, each from the first.
+            got.sort_by_key(|(place, ..)| *place);
             assert_eq!(got, want);
             assert_eq!(alike, want.is_empty());
         }
