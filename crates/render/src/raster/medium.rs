@@ -11,9 +11,9 @@ use super::depth_format::Format;
 use super::large::Touched;
 use super::visibility_buffer::put_rows;
 use crate::screen::coverage::{PixelBox, SUBPIXELS};
-use crate::screen::sample_positions::SamplePositions;
+use crate::screen::sample_positions::{MANY, SamplePositions};
 use crate::screen::tiles::{BLOCK, BLOCK_PIXELS, TILE};
-use crate::simd::{Real, in_f64};
+use crate::simd::{Bits, Real, in_f64};
 use marraztu_core::base::math::each;
 
 /// The largest side of the bounding box, in pixels.
@@ -46,6 +46,20 @@ pub(crate) struct Medium<S: Simd> {
     /// The largest depth of the corners.
     pub(crate) high: f32,
     number: u32,
+}
+
+/// The edge functions of a triangle at the pixels of a block.
+#[derive(Debug)]
+struct EdgeRows {
+    whole: [[i32; BLOCK_PIXELS]; 3],
+    /// The second and third of them.
+    in_f64: [[f64; BLOCK_PIXELS]; 2],
+}
+
+impl Default for EdgeRows {
+    fn default() -> Self {
+        Self { whole: [[0; BLOCK_PIXELS]; 3], in_f64: [[0.0; BLOCK_PIXELS]; 2] }
+    }
 }
 
 impl<S: Simd> Medium<S> {
@@ -101,6 +115,14 @@ impl<S: Simd> Medium<S> {
         self.right[i] * x + self.down[i] * y
     }
 
+    /// Returns the smallest and largest change of an edge function between two offsets.
+    #[inline(always)]
+    fn gains_between(&self, i: usize, [from, to]: [[i32; 2]; 2]) -> [i32; 2] {
+        let (right, down) = (self.right[i], self.down[i]);
+        let ([a, b], [c, d]) = ([right * from[0], right * to[0]], [down * from[1], down * to[1]]);
+        [a.min(b) + c.min(d), a.max(b) + c.max(d)]
+    }
+
     /// Finds the blocks of the tile that the triangle touches in any of the `N` samples of their
     /// pixels, restricted to blocks that `area` reaches into. `area` must not be empty; it is in
     /// pixels relative to the tile's first.
@@ -118,14 +140,10 @@ impl<S: Simd> Medium<S> {
         let (across, below) = (i32x16::from_slice(simd, &ACROSS), i32x16::from_slice(simd, &DOWN));
         let mut gains = [i32x16::splat(simd, 0); 3];
         let (mut most, mut least) = ([0; 3], [0; 3]);
-        let [from, to] = sample_positions.reach::<N>();
         // Bounds of the change of each edge function within a block, over all samples.
         for i in 0..3 {
             if N > 1 {
-                let (right, down) = (self.right[i], self.down[i]);
-                most[i] = (right * from[0]).max(right * to[0]) + (down * from[1]).max(down * to[1]);
-                least[i] =
-                    (right * from[0]).min(right * to[0]) + (down * from[1]).min(down * to[1]);
+                [least[i], most[i]] = self.gains_between(i, sample_positions.reach::<N>());
             }
             let (x, y) = (7 * SUBPIXELS * self.right[i], 7 * SUBPIXELS * self.down[i]);
             most[i] += x.max(0) + y.max(0);
@@ -176,12 +194,48 @@ impl<S: Simd> Medium<S> {
             let covered = (a | b | c).simd_ge(0);
             if covered.any_true() {
                 let (second, third) = (b + self.least[0], c + self.least[1]);
-                let depth = self.depths(simd, second, third);
+                let depth = self.depths(in_f64(second), in_f64(third));
                 let entries = &mut pairs[pair as usize % 4];
                 put_rows(format, simd, covered, depth, self.number, entries);
             }
             (a, b, c) = (a + two_down(0), b + two_down(1), c + two_down(2));
         }
+    }
+
+    /// Finds the pixels of a block, given by its first column and row, that `area` reaches into and
+    /// that the triangle may cover in any of several samples. Returns them as bits, and sets the
+    /// edge functions of their rows.
+    #[inline(always)]
+    fn pixels(
+        &self,
+        [column, row]: [i32; 2],
+        area: PixelBox,
+        positions: &SamplePositions,
+        rows: &mut EdgeRows,
+    ) -> u64 {
+        // A pixel counts if each edge function is not negative where it is largest.
+        let most = |i: usize| self.gains_between(i, positions.reach::<MANY>())[1];
+        let most = [most(0), most(1), most(2)];
+        let mut some = 0;
+        for pair in (area.top - row).max(0) / 2..((area.bottom - row + 1) / 2).min(PAIRS) {
+            let place = [column * SUBPIXELS, (row + 2 * pair) * SUBPIXELS];
+            let at = |i: usize| self.gains[i] + (self.edges[i] + self.gain(i, place));
+            let [a, b, c] = [at(0), at(1), at(2)];
+            let signs = (a + most[0]) | (b + most[1]) | (c + most[2]);
+            some |= signs.simd_ge(0).to_bitmask() << (16 * pair);
+            let to = 16 * pair as usize % BLOCK_PIXELS;
+            for (row, values) in rows.whole.iter_mut().zip([a, b, c]) {
+                values.store_slice(&mut row[to..to + 16]);
+            }
+            for (row, values) in rows.in_f64.iter_mut().zip([b, c]) {
+                let [upper, lower] = in_f64(values);
+                upper.store_slice(&mut row[to..to + 8]);
+                lower.store_slice(&mut row[to + 8..to + 16]);
+            }
+        }
+        let (first, end) = ((area.left - column).max(0), (area.right - column).min(BLOCK));
+        let columns = (0xff << first) & (0xff >> (BLOCK - end));
+        some & (0x0101_0101_0101_0101 * columns)
     }
 
     /// Draws the triangle into the pixels of a block that `area` reaches into, with several samples
@@ -196,36 +250,40 @@ impl<S: Simd> Medium<S> {
         (positions, entries): (&SamplePositions, &mut [u64]),
     ) {
         let block = i32::try_from(block % BLOCK_PIXELS).unwrap_or(0);
-        let (column, row) = (block % BLOCK * BLOCK, block / BLOCK * BLOCK);
-        // Sixteen entries are some samples of neighbouring pixels of a row.
-        let [x, y] = positions.of_entries(simd);
-        let (right, down) = (self.right, self.down);
-        let gains =
-            [x * right[0] + y * down[0], x * right[1] + y * down[1], x * right[2] + y * down[2]];
+        let corner = [block % BLOCK * BLOCK, block / BLOCK * BLOCK];
+        let mut rows = EdgeRows::default();
+        let mut some = self.pixels(corner, area, positions, &mut rows);
+        // Lanes are now sixteen entries: the samples of neighbouring pixels of a row.
         let across = positions.pixels_across();
-        let (left, right) = ((area.left - column).max(0), (area.right - column).min(BLOCK));
-        for y in (area.top - row).max(0)..(area.bottom - row).min(BLOCK) {
-            for x in (left - left % across..right).step_by(across as usize) {
-                let place = [(column + x) * SUBPIXELS, (row + y) * SUBPIXELS];
-                let at = |i: usize| self.edges[i] + self.gain(i, place);
-                let [a, b, c] = [gains[0] + at(0), gains[1] + at(1), gains[2] + at(2)];
-                let covered = (a | b | c).simd_ge(0);
-                if !covered.any_true() {
-                    continue;
-                }
-                let depth = self.depths(simd, b + self.least[0], c + self.least[1]);
-                let first = (y * BLOCK + x) as usize * positions.count();
-                if let Some(entries) = entries[first..].first_chunk_mut() {
-                    put_rows(format, simd, covered, depth, self.number, entries);
-                }
-            }
+        if across > 1 {
+            let pairs = some | some >> 1;
+            some = (pairs | pairs >> 2) & 0x1111_1111_1111_1111;
+        }
+        let [x, y] = positions.of_entries(simd);
+        let gain = |i: usize| x * self.right[i] + y * self.down[i];
+        let gains = [gain(0), gain(1), gain(2)];
+        // Depth needs the second and third edge function in f64, which adds integers exactly.
+        let seconds = in_f64(gains[1] + self.least[0]);
+        let thirds = in_f64(gains[2] + self.least[1]);
+        let entries = entries.as_chunks_mut().0;
+        for pixel in Bits(some) {
+            let pixel = pixel % BLOCK_PIXELS;
+            let at = |i: usize| gains[i] + rows.whole[i][pixel];
+            let covered = (at(0) | at(1) | at(2)).simd_ge(0);
+            let [second, third] = [rows.in_f64[0][pixel], rows.in_f64[1][pixel]];
+            let depth = self.depths(
+                [seconds[0] + second, seconds[1] + second],
+                [thirds[0] + third, thirds[1] + third],
+            );
+            let entries = &mut entries[pixel / across as usize];
+            put_rows(format, simd, covered, depth, self.number, entries);
         }
     }
 
     /// Computes the depths of two rows of a block from their edge functions.
     #[inline(always)]
-    fn depths(&self, simd: S, second: i32x16<S>, third: i32x16<S>) -> f32x16<S> {
-        let (second, third) = (in_f64(second), in_f64(third));
+    fn depths(&self, second: [f64x8<S>; 2], third: [f64x8<S>; 2]) -> f32x16<S> {
+        let simd = second[0].simd;
         let upper = self.depth_at(second[0], third[0]);
         let depth = upper.narrow(self.depth_at(second[1], third[1]));
         // Rounding must not move a depth beyond the depths of the corners.
