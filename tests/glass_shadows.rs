@@ -157,7 +157,7 @@ fn the_edge_between_two_triangles_of_a_pane_counts_once() {
     let camera = marraztu_core::scene::Item::Camera(view.camera, Box::new(camera));
     marraztu_core::scene::Command::Replace(camera).apply(&mut scene).unwrap();
     let picture = draw(&scene, &view, &Settings::default(), 65);
-    // Both diagonals, of which one is an edge.
+    // Both diagonals: one is an edge.
     for i in 1..64 {
         for x in [i, 64 - i] {
             let [r, g, b, _] = picture.pixel(x, i).map(f64::from);

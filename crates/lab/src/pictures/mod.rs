@@ -19,8 +19,8 @@ use marraztu_core::base::rng::Rng;
 use marraztu_core::base::threads::{self, Caller};
 use marraztu_core::edit::lighting;
 use marraztu_core::scene::{
-    Command, Fill, Item, Mesh, MeshSource, Model, NONE, Normals, Object, Projection, Scene,
-    SourceCorner, Texture, View,
+    Command, Fill, Item, Mesh, MeshSource, Model, NONE, Normals, Object, Panorama, Projection,
+    Scene, SourceCorner, Texture, View,
 };
 use marraztu_io as io;
 use marraztu_render::plan_frame;
@@ -140,6 +140,9 @@ pub fn all() -> Vec<TestPicture> {
     all.push(picture("soft shadows in f64", &soft.scene, &soft.view, exact));
     let studio = in_studio(&soft.scene, &soft.view);
     all.push(picture("sky with occlusion", &studio, &soft.view, settings));
+    let outside = under_panorama(&mirrors.scene);
+    all.push(picture("panorama", &outside, &mirrors.view, settings));
+    all.push(picture("panorama, sixteen samples", &outside, &mirrors.view, of(Samples::Sixteen)));
     // One picture for each choice that differs from the default and is portable.
     let bent = bent(&textured);
     for (axis, choice) in AXES.iter().flat_map(|axis| axis.choices.iter().map(move |it| (axis, it)))
@@ -156,6 +159,22 @@ pub fn all() -> Vec<TestPicture> {
         }
     }
     all
+}
+
+/// Lights a scene by a panorama with a lamp.
+fn under_panorama(scene: &Scene) -> Scene {
+    const SIZE: Size = Size::new(64, 32);
+    let texel = |place: usize| match (place % SIZE.width, place / SIZE.width) {
+        (20, 8) => [90.0, 80.0, 60.0],
+        #[expect(clippy::cast_precision_loss, reason = "small numbers")]
+        (column, row) => [column as f32 / 64.0, 1.0 - row as f32 / 32.0, 0.5],
+    };
+    let light = (0..SIZE.area()).map(texel).collect();
+    let panorama = Panorama::new("", SIZE, light, true).expect("its size fits");
+    let mut scene = scene.clone();
+    let command = lighting::panorama_alone(&scene, panorama.into()).expect("no light is locked");
+    command.apply(&mut scene).expect("it fits");
+    scene
 }
 
 /// Lights a scene by a sky and a large lamp.
