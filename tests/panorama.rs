@@ -4,6 +4,7 @@
 //! strength than the integral over the picture, a background that depends on samples or the way of
 //! drawing, an old background after a change, a lost file.
 
+#![allow(clippy::cast_possible_truncation, reason = "light is kept in f32")]
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
 mod common;
@@ -24,6 +25,9 @@ use marraztu_io as io;
 use marraztu_render::{Renderer, plan_frame, without_ground};
 
 const ROWS: usize = 64;
+
+/// The light from a direction.
+type SkyLight<'a> = &'a dyn Fn(DVec3) -> [f64; 3];
 
 /// The direction of a texel: the middle of the picture is -Z, its right half +X, its upper edge +Y.
 fn direction(column: usize, row: usize) -> DVec3 {
@@ -91,7 +95,7 @@ fn the_background_is_what_lies_in_the_direction_of_a_pixel() {
         for (x, y) in [(0, 0), (63, 0), (20, 40), (32, 32), (5, 60)] {
             let at = |i: usize| ((i as f64 + 0.5) / SIDE as f64 * 2.0 - 1.0) * tangent;
             let towards = axes * DVec3::new(at(x), -at(y), -1.0);
-            let want = bytes(smooth(towards.normalize()));
+            let want = bytes(smooth(towards.normalize_or_zero()));
             assert!(is_near(picture.pixel(x, y), want), "{turned:?} {x} {y}: {want:?}");
         }
         // Without perspective, all pixels look the same way.
@@ -145,7 +149,7 @@ fn a_surface_reflects_the_light_of_the_half_that_it_faces() {
     let bright = |d: DVec3| if d.x > 0.97 { [20.0, 15.0, 10.0] } else { smooth(d) };
     // The error of three bands is 3/32 of a lamp that stands in the plane of the surface.
     let lamp = reflected(|d| if d.x > 0.97 { [20.0; 3] } else { [0.0; 3] }, DVec3::X)[0];
-    let skies: [(&dyn Fn(DVec3) -> [f64; 3], f64); 2] = [(&smooth, 0.003), (&bright, 0.1 * lamp)];
+    let skies: [(SkyLight<'_>, f64); 2] = [(&smooth, 0.003), (&bright, 0.1 * lamp)];
     for (degrees, turn) in [(0.0_f64, 0.0_f64), (35.0, 0.0), (60.0, 90.0), (-50.0, 200.0)] {
         let tilt = DMat4::from_rotation_x(-degrees.to_radians());
         let (mut scene, view) = scene(&[(square(), tilt * at(300.0, 0.0, 0.0, 0.0))]);
@@ -197,7 +201,7 @@ fn a_mirror_shows_what_lies_behind_the_observer() {
         let tangent = scene.cameras.get(view.camera).unwrap().lens.half_angle.to_radians().tan();
         let edge = 63.0 / 64.0 * tangent;
         for (x, side) in [(0, -edge), (63, edge)] {
-            let want = bytes(smooth(DVec3::new(side, -tangent / 64.0, 1.0).normalize()));
+            let want = bytes(smooth(DVec3::new(side, -tangent / 64.0, 1.0).normalize_or_zero()));
             assert!(is_near(picture.pixel(x, 32), want), "{x}: {want:?}");
         }
     }
@@ -237,7 +241,8 @@ fn a_roof_hides_a_lamp_above_it_and_not_one_beside_it() {
         let picture = draw(scene, &view, &settings, 65);
         (28..37).map(|x| f64::from(picture.pixel(x, 39)[0])).sum::<f64>() / 9.0
     };
-    for (axis, hidden) in [(DVec3::Y, true), (DVec3::new(1.0, 0.8, 0.0).normalize(), false)] {
+    for (axis, hidden) in [(DVec3::Y, true), (DVec3::new(1.0, 0.8, 0.0).normalize_or_zero(), false)]
+    {
         shine(&mut scene, painted(lamp(axis)), 0.0, false);
         let open = shade(&scene);
         shine(&mut scene, painted(lamp(axis)), 0.0, true);

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
 use marraztu_core::base::Shared;
+use marraztu_core::base::once::get_or_compute;
 use marraztu_core::scene::Panorama;
 use marraztu_io::{self as io, LoadError};
 
@@ -27,6 +28,6 @@ impl Sky {
 
     /// Returns the panorama.
     pub(crate) fn panorama(&self) -> Result<Shared<Panorama>, LoadError> {
-        self.read.get_or_init(|| io::load_panorama(&self.path).map(Shared::new)).clone()
+        get_or_compute(&self.read, || io::load_panorama(&self.path).map(Shared::new)).clone()
     }
 }

@@ -2,18 +2,15 @@
 
 use std::path::Path;
 
-use image::{ColorType, ImageFormat};
+use image::ColorType;
 
 use super::error::{LoadError, shown};
 use super::progress::Progress;
 use super::read::read;
-use super::texture::{MOST_BYTES, decode_bytes, texture_endings};
+use super::texture::{FLOAT_FORMATS, MOST_BYTES, decode_bytes, texture_endings};
 use marraztu_core::base::Shared;
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_core::scene::Panorama;
-
-/// The input formats of panoramas beyond those of textures: light in floats.
-pub(super) const FLOAT_FORMATS: [ImageFormat; 2] = [ImageFormat::Hdr, ImageFormat::OpenExr];
 
 /// Returns the file extensions of panoramas.
 pub fn panorama_endings() -> Vec<&'static str> {
@@ -62,6 +59,12 @@ const LARGEST_FACE: usize = 1024;
 /// Converts the six pictures of a cube, seen from its middle, to a panorama: right is +X, top +Y
 /// and front +Z. Right, left, front and back stand upright; the upper edge of the top and the lower
 /// edge of the bottom touch the back.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_precision_loss,
+    clippy::cast_sign_loss,
+    reason = "within a picture"
+)]
 pub(super) fn panorama_of_cube(source: &Path, faces: &[Shared<Picture>]) -> Panorama {
     let side = faces.iter().map(|face| face.size().height).max().unwrap_or(1).min(LARGEST_FACE);
     let size = Size::new(4 * side, 2 * side);
@@ -109,7 +112,7 @@ mod tests {
         let mut light = image::Rgb32FImage::new(4, 2);
         light.put_pixel(3, 0, image::Rgb([8.0, 0.5, 0.25]));
         let light = image::DynamicImage::from(light);
-        let towards = glam::DVec3::new(1.0, 1.0, 1.0).normalize();
+        let towards = glam::DVec3::new(1.0, 1.0, 1.0).normalize_or_zero();
         for name in ["sky.hdr", "sky.exr"] {
             let panorama = loaded(name, &light);
             assert_eq!(panorama.size(), Size::new(4, 2), "{name}");

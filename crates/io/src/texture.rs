@@ -8,7 +8,6 @@ use image::{ColorType, DynamicImage, ImageDecoder, ImageFormat, ImageReader};
 
 use super::error::{LoadError, shown};
 use super::findings::{Finding, FindingKind, Findings};
-use super::panorama::FLOAT_FORMATS;
 use super::picture::either;
 use super::progress::Progress;
 use super::read::read;
@@ -35,6 +34,9 @@ const FORMATS: &[(&str, ImageFormat)] = &[
     ("TGA", ImageFormat::Tga),
     ("GIF", ImageFormat::Gif),
 ];
+
+/// The input formats of panoramas beyond those of textures: light in floats.
+pub(super) const FLOAT_FORMATS: [ImageFormat; 2] = [ImageFormat::Hdr, ImageFormat::OpenExr];
 
 /// Lists the input formats of textures for a sentence.
 pub fn texture_formats() -> String {

@@ -65,8 +65,7 @@ impl Panorama {
             return None;
         }
         for channel in light.iter_mut().flatten() {
-            // Unlike `clamp`, `max` returns the other number if one is NaN.
-            *channel = channel.max(0.0).min(BRIGHTEST);
+            *channel = if channel.is_nan() { 0.0 } else { channel.clamp(0.0, BRIGHTEST) };
         }
         let texels = Texels { size, light };
         let (source, prepared) = (source.into(), Default::default());
