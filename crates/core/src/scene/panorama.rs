@@ -131,8 +131,8 @@ pub struct PanoramaLight {
     /// replaces, by the solid angles that they cover.
     levels: Vec<Texels>,
     moments: [Moments; 3],
-    /// The share of all light, weighted by solid angle, of the texels up to and including each of
-    /// the level [`Self::guide`].
+    /// The light of lamps, brighter than [`LAMP`] times the mean: the share of all of it that the
+    /// texels up to and including each of the level [`Self::guide`] have. Empty without lamps.
     shares: Vec<f64>,
 }
 
@@ -151,6 +151,12 @@ impl Moments {
     const ZERO: Self = Self { all: 0.0, along: DVec3::ZERO, square: DMat3::ZERO };
 }
 
+/// What is brighter than the mean by this factor is a lamp.
+const LAMP: f64 = 4.0;
+
+/// The least share of all light that lamps have to have to be looked for.
+const LEAST_SHARE: f64 = 0.05;
+
 /// Integrals and samples use the first level with at most this many columns: 1.4 degrees each.
 const GUIDE: usize = 256;
 
@@ -167,8 +173,7 @@ impl PanoramaLight {
         }
         let mut it = Self { levels, moments: [Moments::ZERO; 3], shares: Vec::new() };
         let guide = it.guide();
-        let (mut moments, mut sum) = ([Moments::ZERO; 3], 0.0);
-        let mut shares = Vec::with_capacity(guide.light.len());
+        let mut moments = [Moments::ZERO; 3];
         for (place, texel) in guide.light.iter().enumerate() {
             let (d, angle) = (guide.direction(place), guide.solid_angle(place));
             for (moments, light) in moments.iter_mut().zip(texel) {
@@ -177,12 +182,20 @@ impl PanoramaLight {
                 moments.along += d * part;
                 moments.square += DMat3::from_cols(d * d.x, d * d.y, d * d.z) * part;
             }
-            sum += luminance(*texel) * angle;
-            shares.push(sum);
         }
-        if sum > 0.0 {
-            shares.iter_mut().for_each(|share| *share /= sum);
+        let all = luminance(moments.each_ref().map(|channel| channel.all));
+        let mean = all / (4.0 * std::f64::consts::PI);
+        let mut sum = 0.0;
+        let lamps = guide.light.iter().enumerate().map(|(place, texel)| {
+            let above = luminance(texel.map(f64::from)) - LAMP * mean;
+            sum += above.max(0.0) * guide.solid_angle(place);
+            sum
+        });
+        let mut shares: Vec<f64> = lamps.collect();
+        if sum < LEAST_SHARE * all || sum == 0.0 {
+            shares.clear();
         }
+        shares.iter_mut().for_each(|share| *share /= sum);
         (it.moments, it.shares) = (moments, shares);
         it
     }
@@ -218,20 +231,30 @@ impl PanoramaLight {
         }
     }
 
-    /// Returns the light around a direction, over a texel of 1.4 degrees, and the density per solid
-    /// angle with which [`Self::sampled`] returns such directions.
-    pub fn guided(&self, direction: DVec3) -> ([f64; 3], f64) {
-        let guide = self.guide();
-        let place = guide.place(direction);
-        let before = if place > 0 { self.shares[place - 1] } else { 0.0 };
-        let density = (self.shares[place] - before) / guide.solid_angle(place);
-        (guide.light[place].map(f64::from), density)
+    /// Returns whether a considerable part of the light comes from lamps.
+    pub const fn has_lamps(&self) -> bool {
+        !self.shares.is_empty()
     }
 
-    /// Returns a direction for two numbers from 0 to 1: the more frequent, the brighter it is.
-    pub fn sampled(&self, [u, v]: [f64; 2]) -> DVec3 {
+    /// Returns the light around a direction, over a texel of 1.4 degrees, and the density per solid
+    /// angle with which [`Self::towards_lamp`] returns such directions.
+    pub fn around(&self, direction: DVec3) -> ([f64; 3], f64) {
         let guide = self.guide();
-        let last = self.shares.len() - 1;
+        let place = guide.place(direction);
+        let light = guide.light[place].map(f64::from);
+        if !self.has_lamps() {
+            return (light, 0.0);
+        }
+        let before = if place > 0 { self.shares[place - 1] } else { 0.0 };
+        let density = (self.shares[place] - before) / guide.solid_angle(place);
+        (light, density)
+    }
+
+    /// Returns a direction to a lamp for two numbers from 0 to 1: the more frequent, the brighter
+    /// it is. Without lamps, an arbitrary one.
+    pub fn towards_lamp(&self, [u, v]: [f64; 2]) -> DVec3 {
+        let guide = self.guide();
+        let Some(last) = self.shares.len().checked_sub(1) else { return DVec3::Y };
         let place = self.shares.partition_point(|share| *share <= u).min(last);
         let before = if place > 0 { self.shares[place - 1] } else { 0.0 };
         let own = self.shares[place] - before;
@@ -363,8 +386,8 @@ fn covered(i: usize, count: usize, of: usize) -> [(usize, f64, f64); 3] {
 }
 
 /// Returns the brightness of a texel, with the weights of ITU-R BT.709.
-fn luminance([r, g, b]: [f32; 3]) -> f64 {
-    0.2126 * f64::from(r) + 0.7152 * f64::from(g) + 0.0722 * f64::from(b)
+fn luminance([r, g, b]: [f64; 3]) -> f64 {
+    0.2126 * r + 0.7152 * g + 0.0722 * b
 }
 
 #[cfg(test)]
@@ -439,21 +462,27 @@ mod tests {
     }
 
     #[test]
-    fn samples_follow_the_light() {
+    fn samples_go_to_lamps() {
         let lamp = painted(Size::new(512, 256), |d| if d.x > 0.99 { 100.0 } else { 0.1 });
         let light = lamp.light(true);
         let (mut inside, mut sum, count) = (0, 0.0, 4096);
         for i in 0..count {
             let u = (f64::from(i) + 0.5) / f64::from(count);
-            let direction = light.sampled([u, (f64::from(i) * 0.618).fract()]);
+            let direction = light.towards_lamp([u, (f64::from(i) * 0.618).fract()]);
             assert!((direction.length() - 1.0).abs() < 1e-12);
             inside += i32::from(direction.x > 0.98);
-            let (color, density) = light.guided(direction);
-            sum += color[0] / density / f64::from(count);
+            let (_, density) = light.around(direction);
+            sum += 1.0 / density / f64::from(count);
         }
-        assert!(inside > count * 8 / 10, "{inside}");
-        let all = light.moments()[0].all;
-        assert!((sum / all - 1.0).abs() < 1e-3, "{sum} {all}");
+        assert_eq!(inside, count);
+        // The solid angle of the lamp: 2 pi (1 - 0.99), and of texels that it covers in part.
+        assert!((0.06..0.075).contains(&sum), "{sum}");
+        let (dim, density) = light.around(DVec3::NEG_X);
+        assert!((dim[0] - 0.1).abs() < 1e-6 && density == 0.0);
+        let cloudy = painted(Size::new(64, 32), |d| 1.0 + 0.9 * d.y as f32);
+        assert!(!cloudy.light(true).has_lamps() && light.has_lamps());
+        let black = painted(Size::new(4, 2), |_| 0.0);
+        assert!(!black.light(true).has_lamps());
     }
 
     #[test]

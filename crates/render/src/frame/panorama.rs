@@ -70,17 +70,22 @@ impl PlacedPanorama {
         self.scaled(self.light().seen(direction, width))
     }
 
+    /// Returns whether a considerable part of the light comes from lamps.
+    pub(crate) fn has_lamps(&self) -> bool {
+        self.light().has_lamps()
+    }
+
     /// Returns the light around a direction in world space, and the density per solid angle of
-    /// [`Self::sampled`] there.
-    pub(crate) fn guided(&self, towards: DVec3) -> ([f64; 3], f64) {
-        let (light, density) = self.light().guided(self.picture_from_world * towards);
+    /// [`Self::towards_lamp`] there.
+    pub(crate) fn around(&self, towards: DVec3) -> ([f64; 3], f64) {
+        let (light, density) = self.light().around(self.picture_from_world * towards);
         (self.scaled(light), density)
     }
 
-    /// Returns a direction in world space for two numbers from 0 to 1: the more frequent, the
-    /// brighter it is.
-    pub(crate) fn sampled(&self, at: [f64; 2]) -> DVec3 {
-        self.picture_from_world.transpose() * self.light().sampled(at)
+    /// Returns a direction to a lamp in world space for two numbers from 0 to 1: the more frequent,
+    /// the brighter it is.
+    pub(crate) fn towards_lamp(&self, at: [f64; 2]) -> DVec3 {
+        self.picture_from_world.transpose() * self.light().towards_lamp(at)
     }
 
     /// Returns the light that reaches a surface with the normal n, in view space, from the half of

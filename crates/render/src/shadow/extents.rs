@@ -23,20 +23,24 @@ impl Sky<'_> {
     /// Returns a direction above a point, and the light from there with its weight.
     ///
     /// Directions are the more frequent, the closer they are to the normal, in proportion to the
-    /// cosine. Of a panorama, every second direction is the more frequent, the brighter it is, and
-    /// light is weighted by the density of both (Veach and Guibas, "Optimally Combining Sampling
+    /// cosine. If a panorama has lamps, every second direction goes to one of them, and light is
+    /// weighted by the density of both (Veach and Guibas, "Optimally Combining Sampling
     /// Techniques for Monte Carlo Rendering", SIGGRAPH 1995).
     pub(crate) fn sample(&self, above: &SkyAbove, number: u32) -> (LightSample, [f64; 3]) {
         let Some(panorama) = self.panorama else {
             let towards = above.around_normal(sequence_sample(number, above.seed));
             return (sample_of(towards), self.colors[usize::from(towards.y < 0.0)]);
         };
+        if !panorama.has_lamps() {
+            let towards = above.around_normal(sequence_sample(number, above.seed));
+            return (sample_of(towards), panorama.around(towards).0);
+        }
         let towards = match number % 2 {
             0 => above.around_normal(sequence_sample(number / 2, above.seed)),
-            _ => panorama.sampled(sequence_sample(number / 2, above.seed ^ BRIGHT)),
+            _ => panorama.towards_lamp(sequence_sample(number / 2, above.seed ^ LAMPS)),
         };
         let cosine = above.normal.dot(towards).max(0.0) / std::f64::consts::PI;
-        let (light, density) = panorama.guided(towards);
+        let (light, density) = panorama.around(towards);
         let weight = if cosine > 0.0 { cosine / (cosine + density) } else { 0.0 };
         (sample_of(towards), light.map(|it| it * weight))
     }
@@ -48,8 +52,8 @@ impl Sky<'_> {
     }
 }
 
-/// Tells the seeds of directions by brightness from those of directions by cosine.
-const BRIGHT: u32 = 0x5bd1_e995;
+/// Tells the seeds of directions to lamps from those of directions by cosine.
+const LAMPS: u32 = 0x5bd1_e995;
 
 /// Returns the sample of a direction.
 const fn sample_of(towards: DVec3) -> LightSample {
