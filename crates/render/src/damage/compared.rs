@@ -154,18 +154,10 @@ fn holes_key(pipeline: &Pipeline) -> impl PartialEq + use<> {
 }
 
 fn light_key(light: &ViewLight) -> impl PartialEq + use<> {
-    let ViewLight {
-        color,
-        ground,
-        irradiance,
-        position,
-        direction,
-        attenuation,
-        cos_half_aperture,
-        exponent,
-    } = *light;
+    let ViewLight { color, ground, position, direction, attenuation, cos_half_aperture, exponent } =
+        *light;
     let vectors = [color, ground, position, direction, attenuation].map(bits);
-    (vectors, irradiance.map(bits), bits([cos_half_aperture, exponent]))
+    (vectors, bits([cos_half_aperture, exponent]))
 }
 
 fn lines_key(lines: &Lines) -> impl PartialEq + use<> {

@@ -41,7 +41,7 @@ pub(crate) struct SurfaceRays {
     /// Whether the surface is closed. Light passes through an open one unbent.
     pub(crate) is_closed: bool,
     /// What is mirrored in place of the background.
-    pub(crate) environment: Option<MirroredPanorama>,
+    pub(crate) environment: Option<Box<MirroredPanorama>>,
 }
 
 /// The environment of a material.

@@ -126,6 +126,11 @@ impl PlacedPanorama {
 }
 
 impl FramePlan {
+    /// Returns the panorama of a light that has one and shines.
+    pub(crate) fn panorama_of(&self, light: u32) -> Option<&PlacedPanorama> {
+        self.panoramas.iter().find(|panorama| panorama.light == Some(light))
+    }
+
     /// Returns the light that arrives along a ray that meets nothing, as values to be summed.
     pub(crate) fn light_behind(&self, towards: DVec3, width: f64) -> [f64; 3] {
         if self.panoramas.is_empty() {

@@ -16,8 +16,8 @@ impl LightShader for Panorama {
     const HAS_POSITION: bool = false;
 
     fn is_noop(light: &ViewLight, material: &PhongMaterial) -> Option<&'static str> {
-        if light.irradiance == [[0.0; 10]; 3] {
-            Some("it is black")
+        if light.color == [0.0; 3] {
+            Some("its colour is black")
         } else if material.diffuse == [0.0; 3] {
             Some("Kd of the material is 0")
         } else {

@@ -15,8 +15,6 @@ pub(crate) struct ViewLight {
     pub(crate) color: [f64; 3],
     /// The colour below the horizon, of a sky.
     pub(crate) ground: [f64; 3],
-    /// The light of a sky with a panorama.
-    pub(crate) irradiance: Irradiance<f64>,
     /// The position.
     pub(crate) position: [f64; 3],
     /// The direction of its light, of length 1.
@@ -121,11 +119,7 @@ impl<T: Number> LightTerm<T> {
             diffuse: times(material.diffuse),
             specular: times(material.specular),
             ground: all([0, 1, 2].map(|i| light.ground[i] * material.diffuse[i])),
-            irradiance: (which == Which::Panorama).then(|| {
-                let of =
-                    |i: usize| light.irradiance[i].map(|it| T::from_f64(it * material.diffuse[i]));
-                Box::new([of(0), of(1), of(2)])
-            }),
+            irradiance: None,
             position: all(light.position),
             axis: all(light.direction.map(|x| -x)),
             attenuation: all(light.attenuation),
@@ -136,6 +130,14 @@ impl<T: Number> LightTerm<T> {
             highlight,
             least_cosine: T::from_f64(material.least_cosine),
         }
+    }
+}
+
+impl<T: Number> LightTerm<T> {
+    /// Adds the light of a panorama on a material.
+    pub(crate) fn with(self, irradiance: &Irradiance<f64>, material: &PhongMaterial) -> Self {
+        let of = |i: usize| irradiance[i].map(|it| T::from_f64(it * material.diffuse[i]));
+        Self { irradiance: Some(Box::new([of(0), of(1), of(2)])), ..self }
     }
 }
 

@@ -73,7 +73,7 @@ impl Planner<'_> {
                 let is_linear = plan.variants.are_linear();
                 let view = plan.view_from_world;
                 let panorama = PlacedPanorama::new(&sky, (None, [1.0; 3]), view, is_linear);
-                MirroredPanorama { panorama, is_alone: *is_alone }
+                Box::new(MirroredPanorama { panorama, is_alone: *is_alone })
             }),
         };
         (rays.reflects() || rays.transmits()).then_some(rays)

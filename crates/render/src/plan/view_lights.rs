@@ -69,7 +69,6 @@ pub(super) fn view_lights(
                 LightKind::Sky { ground, .. } => shine(ground),
                 _ => [0.0; 3],
             },
-            irradiance: panorama.as_ref().map_or_else(Default::default, PlacedPanorama::irradiance),
             position: position.to_array(),
             direction: turned.unwrap_or(DVec3::NEG_Z).to_array(),
             attenuation,

@@ -60,7 +60,11 @@ impl<T: Number> LightTerms<T> {
                 let term = |stage: &Stage| {
                     let light = &plan.lights[stage.light as usize];
                     let shader = (stage.effect.which, stage.highlight, stage.is_mapped);
-                    LightTerm::new(light, material, highlight, shader)
+                    let term = LightTerm::new(light, material, highlight, shader);
+                    match plan.panorama_of(stage.light) {
+                        Some(panorama) => term.with(&panorama.irradiance(), material),
+                        None => term,
+                    }
                 };
                 terms.extend(stages.iter().map(term));
             }

@@ -164,7 +164,7 @@ impl<'a> Tracer<'a> {
             let own = &plan.lights[light as usize];
             let is_sky =
                 *source == Some(ShadowSource::Everywhere) && plan.shadows.radius(light) > 0.0;
-            let panorama = plan.panoramas.iter().find(|panorama| panorama.light == Some(light));
+            let panorama = plan.panorama_of(light);
             is_sky.then_some(Sky { colors: [own.color, own.ground], panorama, light, samples })
         };
         self.skies = (0_u32..).zip(&plan.shadows.sources).map(sky).collect();
