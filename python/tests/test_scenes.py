@@ -2,6 +2,7 @@
 
 import math
 import pickle
+from pathlib import Path
 
 import marraztu as mz
 import numpy as np
@@ -379,3 +380,21 @@ def test_wrong_lights_backgrounds_units_shots_and_pixels_are_rejected(quad):
         next(mz.render_many([5]))
     with pytest.raises(IndexError, match="pixel -1,0 is outside"):
         scene.explain(-1, 0, 8, 8)
+
+
+def test_a_panorama_is_the_background_and_lights(tmp_path, quad):
+    sky = tmp_path / "sky.png"
+    mz.Scene(background=(10, 120, 240)).render(8, 4).save(sky)
+    scene = mz.Scene([quad])
+    scene.lights = [mz.Light.sky(panorama=sky, turn=0.5, shadows=True)]
+    (light,) = scene.lights
+    assert (Path(light.panorama), light.turn, light.shown) == (sky, pytest.approx(0.5), True)
+    picture = scene.render(32, 24)
+    assert tuple(picture.color[0, 0]) == (10, 120, 240)
+    red, green, blue = (int(channel) for channel in picture.color[12, 16])
+    assert red < green < blue, "the square is lit by the blue sky"
+    scene.lights = [light._replace(shown=False)]
+    assert tuple(scene.render(32, 24).color[0, 0]) == scene.background
+    with pytest.raises(mz.LoadError, match=r"none\.hdr"):
+        scene.lights = [mz.Light.sky(panorama="none.hdr")]
+    assert scene.lights == [light._replace(shown=False)]
