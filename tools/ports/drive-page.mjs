@@ -435,8 +435,9 @@ const checks = {
     await page.palette("example chess");
     await page.hears("Opened chess");
     await page.changes("a step", () => page.tab.press("x"));
-    // The part of the picture below the dial and left of the notices.
-    const board = [240, 200, 270, 390];
+    // The part of the picture left of the notices and below the dial, whose sentence may take
+    // another line.
+    const board = [240, 260, 270, 330];
     const before = await page.still(board);
     // Boxes for missing files would hide others.
     equal((await page.said()).includes("it is behind other objects"), false, "an object is hidden");
