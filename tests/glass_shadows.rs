@@ -16,8 +16,8 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::color::Color;
 use marraztu_core::base::image::Size;
 use marraztu_core::scene::{
-    Attenuation, Light, LightId, LightKind, List, Material, MaterialChoice, Model, ObjectId,
-    Optics, Projection, Scene, Sides, Tracked, Transmission, View,
+    Attenuation, Command, Item, Light, LightId, LightKind, List, Material, MaterialChoice, Model,
+    ObjectId, Optics, Projection, Scene, Sides, Tracked, Transmission, View,
 };
 use marraztu_render::{Renderer, plan_frame};
 
@@ -60,16 +60,22 @@ fn sun() -> LightKind {
     LightKind::Sun { direction: Tracked::new(DVec3::NEG_Z) }
 }
 
-/// The light on the paper below the glass, relative to that beside it. Glass between paper and
-/// observer would dim it once more, so the observer is below the glass.
-fn shares(scene: &Scene, view: &View, settings: &Settings) -> [f64; 3] {
-    let mut seen = scene.clone();
-    let mut camera = seen.cameras.get(view.camera).unwrap().clone();
+/// Moves the observer below the glass.
+fn from_below(scene: &Scene, view: &View) -> Scene {
+    let mut scene = scene.clone();
+    let mut camera = scene.cameras.get(view.camera).unwrap().clone();
     let mut pose = *camera.pose.now();
     pose.eye = DVec3::new(0.0, 0.0, 60.0);
     camera.pose = Tracked::new(pose);
-    let camera = marraztu_core::scene::Item::Camera(view.camera, Box::new(camera));
-    marraztu_core::scene::Command::Replace(camera).apply(&mut seen).unwrap();
+    let camera = Item::Camera(view.camera, Box::new(camera));
+    Command::Replace(camera).apply(&mut scene).unwrap();
+    scene
+}
+
+/// The light on the paper below the glass, relative to that beside it. Glass between paper and
+/// observer would dim it once more, so the observer is below the glass.
+fn shares(scene: &Scene, view: &View, settings: &Settings) -> [f64; 3] {
+    let seen = from_below(scene, view);
     let picture = draw(&seen, view, settings, SIDE);
     let [dim, open] = [SIDE / 8, SIDE - 1 - SIDE / 8].map(|x| picture.pixel(x, SIDE / 2));
     std::array::from_fn(|i| f64::from(dim[i]) / f64::from(open[i]))
@@ -150,12 +156,7 @@ fn the_edge_between_two_triangles_of_a_pane_counts_once() {
     );
     let (mut scene, view) = under(&[whole], Transmission::Filter(GREEN));
     shine(&mut scene, sun(), 0.0);
-    let mut camera = scene.cameras.get(view.camera).unwrap().clone();
-    let mut pose = *camera.pose.now();
-    pose.eye = DVec3::new(0.0, 0.0, 60.0);
-    camera.pose = Tracked::new(pose);
-    let camera = marraztu_core::scene::Item::Camera(view.camera, Box::new(camera));
-    marraztu_core::scene::Command::Replace(camera).apply(&mut scene).unwrap();
+    let scene = from_below(&scene, &view);
     let picture = draw(&scene, &view, &Settings::default(), 65);
     // Both diagonals: one is an edge.
     for i in 1..64 {

@@ -36,7 +36,7 @@ fn direction(column: usize, row: usize) -> DVec3 {
     DVec3::new(fall.sin() * turn.sin(), fall.cos(), -fall.sin() * turn.cos())
 }
 
-/// A panorama whose light is a function of the direction.
+/// Paints a panorama by a function of the direction.
 fn painted(light: impl Fn(DVec3) -> [f64; 3]) -> Panorama {
     let texels = (0..2 * ROWS * ROWS).map(|place| {
         light(direction(place % (2 * ROWS), place / (2 * ROWS))).map(|channel| channel as f32)

@@ -54,7 +54,7 @@ impl Panorama {
         if cfg!(target_pointer_width = "32") { 1 << 24 } else { 1 << 27 };
 
     /// Creates a panorama of these texels, row by row from the top; `None` if their number does not
-    /// fit, or is 0. What is no number or below 0 becomes 0.
+    /// fit, or is 0. NaN and negative numbers become 0.
     pub fn new(
         source: impl Into<PathBuf>,
         size: Size,
@@ -151,10 +151,10 @@ impl Moments {
     const ZERO: Self = Self { all: 0.0, along: DVec3::ZERO, square: DMat3::ZERO };
 }
 
-/// What is brighter than the mean by this factor is a lamp.
+/// Texels brighter than the mean by this factor are lamps.
 const LAMP: f64 = 4.0;
 
-/// The least share of all light that lamps have to have to be looked for.
+/// Rays look for lamps if these have at least this share of all light.
 const LEAST_SHARE: f64 = 0.05;
 
 /// Integrals and samples use the first level with at most this many columns: 1.4 degrees each.
@@ -340,8 +340,8 @@ impl Texels {
         libm::cos(std::f64::consts::PI * part)
     }
 
-    /// Returns a copy of half the width and height, rounded up. Each texel is the mean of what it
-    /// covers, by solid angle, so the light of the whole stays the same for odd sizes, too.
+    /// Returns a copy of half the width and height, rounded up. Each texel is the mean of the area
+    /// that it covers, weighted by solid angle, so odd sizes keep their light, too.
     #[expect(clippy::cast_possible_truncation, reason = "light is kept in f32")]
     fn halved(&self) -> Self {
         let Size { width, height } = self.size;
@@ -395,7 +395,7 @@ mod tests {
     use super::*;
     use std::f64::consts::PI;
 
-    /// A picture whose light is a function of the direction.
+    /// Paints a panorama by a function of the direction.
     fn painted(size: Size, light: impl Fn(DVec3) -> f32) -> Panorama {
         let blank = Texels { size, light: Vec::new() };
         let texels = (0..size.area()).map(|place| [light(blank.direction(place)); 3]).collect();

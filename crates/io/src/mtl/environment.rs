@@ -11,8 +11,7 @@ use marraztu_core::base::Shared;
 use marraztu_core::scene::{Environment, Panorama};
 
 impl Library<'_> {
-    /// Returns what a material mirrors in place of the background, if it asks for that: `illum` 3
-    /// to 9 with `refl`.
+    /// Returns the surroundings of a material with `refl`, if it mirrors: `illum` 3 to 9.
     pub(super) fn environment(
         &mut self,
         statements: &Statements,

@@ -91,8 +91,8 @@ impl PlacedPanorama {
     /// Returns the light that reaches a surface with the normal n, in view space, from the half of
     /// all directions in front of it, weighted by the cosine of incidence and divided by pi.
     ///
-    /// The weight is replaced by its first three bands of spherical harmonics: the error is 9% of
-    /// the light at most, and about 1% on average (Ramamoorthi and Hanrahan, "An Efficient
+    /// The weight is replaced by its first three bands of spherical harmonics: the error is 9% in
+    /// theory, and about 3% for real panoramas (Ramamoorthi and Hanrahan, "An Efficient
     /// Representation for Irradiance Environment Maps", SIGGRAPH 2001). In the integrals of L, L d
     /// and L d d^T over all directions d, that is
     ///
