@@ -16,9 +16,10 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::color::Color;
 use marraztu_core::base::image::Size;
 use marraztu_core::scene::{
-    Attenuation, Command, Item, Light, LightId, LightKind, List, Material, MaterialChoice, Model,
-    ObjectId, Optics, Projection, Scene, Sides, Tracked, Transmission, View,
+    Attenuation, Command, Item, Light, LightId, LightKind, List, LoadOptions, Material,
+    MaterialChoice, Model, ObjectId, Optics, Projection, Scene, Sides, Tracked, Transmission, View,
 };
+use marraztu_io as io;
 use marraztu_render::{Renderer, plan_frame};
 
 const SIDE: usize = 48;
@@ -170,8 +171,13 @@ fn the_edge_between_two_triangles_of_a_pane_counts_once() {
 
 #[test]
 fn a_picture_on_glass_leaves_its_filter() {
-    let (mut scene, view) = under(&[pane(120.0)], Transmission::Opacity);
-    let texels = vec![[255, 255, 255, 255], [255, 255, 255, 0], [9, 9, 9, 255], [9, 9, 9, 255]];
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("pane.obj");
+    let corners = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
+    std::fs::write(&path, format!("{corners}f 1/1 2/2 3/3 4/4\n")).unwrap();
+    let loaded = io::load(&path, &LoadOptions::default(), &io::Progress::new()).unwrap();
+    let (mut scene, view) = under(&[(loaded.model.into(), pane(120.0).1)], Transmission::Opacity);
+    let texels = vec![[255; 4], [255, 255, 255, 250], [9, 9, 9, 255], [9, 9, 9, 255]];
     let picture = marraztu_core::base::image::Picture::from_pixels(Size::new(2, 2), texels);
     let texture = marraztu_core::scene::Texture::new("t.png", picture.unwrap());
     edit(&mut scene, ObjectId(11), |object| {
@@ -179,7 +185,7 @@ fn a_picture_on_glass_leaves_its_filter() {
         object.texture = Some(texture.into());
     });
     shine(&mut scene, sun(), 0.0);
-    // The square has no texture coordinates, so it has no holes either.
+    // Its alpha cuts no holes, although the opacity is below one half.
     let got = shares(&scene, &view, &Settings::default());
     assert!(are_near(got, [0.7; 3], 0.01), "{got:?}");
 }

@@ -133,3 +133,30 @@ impl Passed {
         std::mem::replace(&mut self.share, [1.0; 3])
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn surfaces_that_share_an_edge_count_once_and_both_sides_of_a_body_twice() {
+        let hit = |thing, triangle, is_front, distance| Hit {
+            thing,
+            triangle,
+            weights: DVec3::new(0.5, 0.5, 0.0),
+            distance,
+            is_front,
+        };
+        let mut passed = Passed { surfaces: Vec::new(), share: [1.0; 3] };
+        let hits = [
+            hit(0, 3, true, 2.0),
+            hit(0, 4, true, 2.0 + 1e-12),
+            hit(0, 9, false, 2.0),
+            hit(1, 3, true, 2.0),
+            hit(0, 3, true, 2.1),
+        ];
+        hits.iter().for_each(|hit| passed.add(hit, [0.5, 1.0, 0.0]));
+        assert_eq!(passed.take(), [0.0625, 1.0, 0.0]);
+        assert_eq!(passed.take(), [1.0; 3], "the next ray begins anew");
+    }
+}
