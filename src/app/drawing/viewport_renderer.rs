@@ -348,6 +348,7 @@ fn applicable(wanted: &Snapshot, casts_rays: bool) -> Applicable {
 mod tests {
     use std::cell::Cell;
     use std::sync::OnceLock;
+    use std::sync::atomic::{AtomicUsize, Ordering};
 
     use super::super::reduction::Shrink;
     use super::*;
@@ -422,15 +423,19 @@ mod tests {
     #[test]
     fn a_new_picture_with_many_rays_is_preceded_by_one_of_few() {
         let lesson = io::lesson_scene("soft").unwrap();
-        let own = snapshot(Size::new(64, 48));
+        let own = snapshot(Size::new(256, 192));
         let shot = Shot::new(&lesson.scene, &lesson.view, &Settings::default(), own.shot.size);
         let wanted = Snapshot { shot, options: own.options };
         let mut renderer = ViewportRenderer::new(Instant::now, Arc::default());
         let preview = renderer.draw(&wanted, &this).unwrap();
         assert_eq!(preview.reduction, Reduction::PREVIEW);
-        // Disturbed, the preview stays, and can be picked.
-        assert!(matches!(renderer.refine(&wanted, &|| false), Finer::Disturbed));
-        assert!(renderer.hit([32, 40]).is_some());
+        // Disturbed between two tiles, the preview stays, and can be picked.
+        let asked = AtomicUsize::new(0);
+        let disturbed = || asked.fetch_add(1, Ordering::Relaxed) < 10;
+        assert!(matches!(renderer.refine(&wanted, &disturbed), Finer::Disturbed));
+        let shown = Renderer::default().render(&planned(&wanted, Reduction::PREVIEW)).clone();
+        assert_eq!(*renderer.renderer.picture(), shown);
+        assert!(renderer.hit([128, 160]).is_some());
         let Finer::Refined(full) = renderer.refine(&wanted, &|| true) else { panic!("full") };
         assert_eq!((full.reduction, full.refined), (Reduction::NONE, None));
         let expected = Renderer::default().render(&planned(&wanted, Reduction::NONE)).clone();
