@@ -189,6 +189,7 @@ fn whole(before: &FramePlan, after: &FramePlan) -> Option<DamageCause> {
         surroundings: _,
         rules,
         light_ids: _,
+        sample: _,
     } = after;
     let moved = *eye != before.eye
         || *viewport != before.viewport

@@ -302,7 +302,8 @@ impl Renderer {
         let shifts = shifts(plan.samples);
         let last = shifts.len() - 1;
         for (i, shift) in shifts.enumerate() {
-            let own = plan.seen_from(shift);
+            let sample = u32::try_from(i).expect("at most 64 samples");
+            let own = FramePlan { sample, ..plan.seen_from(shift) };
             self.prepare(&own);
             let one = SamplePositions::default();
             self.timings += self.frame.build(self.level, &own, one, watch);

@@ -200,9 +200,14 @@ impl PanoramaLight {
         it
     }
 
-    fn guide(&self) -> &Texels {
+    /// Returns the first level with at most this many columns.
+    fn level_of(&self, columns: usize) -> &Texels {
         let last = &self.levels[self.levels.len() - 1];
-        self.levels.iter().find(|level| level.size.width <= GUIDE).unwrap_or(last)
+        self.levels.iter().find(|level| level.size.width <= columns).unwrap_or(last)
+    }
+
+    fn guide(&self) -> &Texels {
+        self.level_of(GUIDE)
     }
 
     /// Returns the integrals of each channel.
@@ -236,15 +241,26 @@ impl PanoramaLight {
         !self.shares.is_empty()
     }
 
+    /// Returns the light around a direction, over about the solid angle that each of a number of
+    /// samples has of all directions, so that no bright spot falls on a single one (Křivánek and
+    /// Colbert, "Real-time Shading with Filtered Importance Sampling", EGSR 2008).
+    pub fn spread(&self, direction: DVec3, samples: u32) -> [f64; 3] {
+        let columns = match samples {
+            0..16 => 8,
+            16..64 => 16,
+            64..256 => 32,
+            _ => 64,
+        };
+        let level = self.level_of(columns);
+        level.light[level.place(direction)].map(f64::from)
+    }
+
     /// Returns the light around a direction, over a texel of 1.4 degrees, and the density per solid
     /// angle with which [`Self::towards_lamp`] returns such directions.
     pub fn around(&self, direction: DVec3) -> ([f64; 3], f64) {
         let guide = self.guide();
         let place = guide.place(direction);
         let light = guide.light[place].map(f64::from);
-        if !self.has_lamps() {
-            return (light, 0.0);
-        }
         let before = if place > 0 { self.shares[place - 1] } else { 0.0 };
         let density = (self.shares[place] - before) / guide.solid_angle(place);
         (light, density)
@@ -459,6 +475,18 @@ mod tests {
         let half = painted(Size::new(255, 127), |d| f32::from(u8::from(d.x > 0.0)));
         let [mean, ..] = half.light(true).seen(DVec3::Y, 2.0 * PI);
         assert!((mean - 0.5).abs() < 0.01, "{mean}");
+    }
+
+    #[test]
+    fn no_bright_spot_falls_on_a_single_sample() {
+        // A spot of a degree, a thousand times as bright as the rest, has a fiftieth of the light.
+        let spot = painted(Size::new(1024, 512), |d| if d.x > 0.99996 { 1000.0 } else { 1.0 });
+        let light = spot.light(true);
+        assert!(!light.has_lamps());
+        let [finest, ..] = light.levels[0].light[light.levels[0].place(DVec3::X)];
+        let brightest = [4, 16, 64, 256].map(|samples| light.spread(DVec3::X, samples)[0]);
+        assert!(finest == 1000.0 && brightest[3] < 20.0, "{brightest:?}");
+        assert!(brightest[1] < 2.0 && brightest.is_sorted(), "{brightest:?}");
     }
 
     #[test]

@@ -48,6 +48,8 @@ pub struct FramePlan {
     /// The offset of the sample from the centre of its pixel, in subpixels, if each sample is drawn
     /// as a separate picture; in a window, the offset of the window, too.
     pub(crate) shift: [i32; 2],
+    /// The number of the sample, if each is drawn as a separate picture; otherwise 0.
+    pub(crate) sample: u32,
     /// The distance between samples that are lit, in pixels: textures are filtered for it.
     pub(crate) spacing: f64,
     /// The filter of textures.

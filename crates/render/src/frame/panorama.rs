@@ -75,6 +75,12 @@ impl PlacedPanorama {
         self.light().has_lamps()
     }
 
+    /// Returns the light around a direction in world space, over the solid angle of one of some
+    /// samples.
+    pub(crate) fn spread(&self, towards: DVec3, samples: u32) -> [f64; 3] {
+        self.scaled(self.light().spread(self.picture_from_world * towards, samples))
+    }
+
     /// Returns the light around a direction in world space, and the density per solid angle of
     /// [`Self::towards_lamp`] there.
     pub(crate) fn around(&self, towards: DVec3) -> ([f64; 3], f64) {

@@ -108,6 +108,7 @@ fn planned_in(rules: Rules, notes: Notes, shot: &Shot) -> Planning {
         samples: settings.samples,
         lit_by_sample: by_sample && settings.samples != Samples::One,
         shift: [0; 2],
+        sample: 0,
         spacing: match by_sample {
             // N samples per pixel are as dense as a square grid of this spacing.
             true => 1.0 / libm::sqrt(f64::from(settings.samples.count())),

@@ -22,7 +22,7 @@ use marraztu_core::scene::{Fill, ItemId, MapKind, Object, ObjectId, PartLook};
 const LEAST_SAMPLES: u32 = 16;
 
 /// The same for each ray of a pixel: mirrors and glass send on many.
-pub(super) const LEAST_OF_RAYS: u32 = 4;
+pub(super) const LEAST_OF_RAYS: u32 = 2;
 
 /// Returns the samples of a light for each of the points of a pixel that are lit one by one: they
 /// share those of the pixel, and have at least `least`, unless fewer are chosen.

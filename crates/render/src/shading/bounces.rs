@@ -16,7 +16,7 @@ use glam::DVec3;
 use super::context::{Around, Group, ShadingContext};
 use super::hits::{MOST, Point, no_light};
 use super::interpolated::ShadingNumber;
-use super::lit_points::{shares, within};
+use super::lit_points::{light_place, shares, within};
 use super::map_rows::Map;
 use super::map_texels::TexelSource;
 use super::optics::{Media, Meeting, reflectance};
@@ -30,6 +30,7 @@ use crate::rays::{Corners, Hit, OwnTriangles, Ray, RayStack};
 use crate::screen::sample_positions::MANY;
 use crate::screen::weights::Weights;
 use crate::shadow::rays::RayCount;
+use crate::shadow::sequence::after_bounces;
 use crate::simd::{BATCH, Bits, dispatch};
 use marraztu_core::base::math::unit;
 
@@ -60,6 +61,8 @@ struct Branch {
     weight: [f64; 3],
     /// The index of the fragment.
     target: usize,
+    /// The place of its samples in the sequences of lights.
+    place: u32,
     /// The environment of the mirror that it comes from, if that has one of its own.
     environment: Option<OwnEnvironment>,
     cone: Cone,
@@ -166,6 +169,7 @@ impl<T: ShadingNumber> Shader<T> {
         let Some(thing) = around.of_draws[group.draw_index as usize] else { return };
         let mapped = self.mapped_specular(group, rays);
         let positions = frame.sample_positions();
+        let count = positions.shares().cast_unsigned();
         let share = 1.0 / f64::from(positions.shares());
         let pixel = plan.pixel_size() * share.sqrt();
         let vertices = frame.corners_of(group.draw_index);
@@ -183,7 +187,7 @@ impl<T: ShadingNumber> Shader<T> {
             let outside = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
             let outside = outside.normalize_or_zero();
             let pipeline = around.surroundings.draw(thing).0.pipeline_of(number);
-            for sample in 0..positions.count() {
+            for (sample, ray) in (0..positions.count()).zip(0..) {
                 let shift =
                     if positions.are_many() { positions.shift::<MANY>(sample) } else { [0; 2] };
                 let weights = Weights::of_samples(plan, draw, vertices, (number, shift));
@@ -192,7 +196,8 @@ impl<T: ShadingNumber> Shader<T> {
                     .enumerate()
                     .flat_map(|(word, bits)| Bits(*bits).map(move |bit| 64 * word + bit))
                 {
-                    let [y, z] = shares(weights.at([self.fragments.x[i], self.fragments.y[i]]));
+                    let at = [self.fragments.x[i], self.fragments.y[i]];
+                    let [y, z] = shares(weights.at(at));
                     let position = within(&corners, [y, z]);
                     let towards = match plan.eye {
                         Eye::Point => unit(position).unwrap_or(DVec3::NEG_Z),
@@ -221,6 +226,7 @@ impl<T: ShadingNumber> Shader<T> {
                         ray: Ray { from: DVec3::ZERO, towards, own: None },
                         weight: [share; 3],
                         target: i,
+                        place: light_place(plan, at).wrapping_mul(count).wrapping_add(ray),
                         environment: None,
                         cone,
                         bounces: 0,
@@ -414,7 +420,8 @@ impl Branch {
     /// Returns the point that it meets, not shaded yet.
     fn met(&self, hit: Hit, corners: Corners) -> Met {
         let width = self.cone.after(hit.distance).width;
-        let point = Point { hit, towards: self.ray.towards, corners, width };
+        let place = after_bounces(self.place, self.bounces);
+        let point = Point { hit, towards: self.ray.towards, corners, width, place };
         Met { point, light: [0.0; 3], opacity: 1.0, normal: DVec3::ZERO, mapped: [1.0; 3] }
     }
 }

@@ -33,6 +33,8 @@ pub(super) struct Point {
     pub(super) corners: Corners,
     /// The width of the ray where it meets the surface: textures are filtered for it.
     pub(super) width: f64,
+    /// The place of its samples in the sequences of lights.
+    pub(super) place: u32,
 }
 
 /// The most points of a list.

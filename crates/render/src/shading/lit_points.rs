@@ -10,10 +10,13 @@ use glam::{DMat3, DVec3};
 use super::context::{Group, ShadingContext};
 use super::interpolate::Points;
 use super::interpolated::ShadingNumber;
+use crate::frame::FramePlan;
 use crate::frame::draw::Draw;
 use crate::rays::Corners;
+use crate::screen::coverage::SUBPIXELS;
 use crate::screen::weights::Weights;
 use crate::shadow::rays::Origins;
+use crate::shadow::sequence::place_of_pixel;
 use crate::shadow::tracer::Tracer;
 use marraztu_core::accuracy::{Interpolation, Terminator};
 use marraztu_core::base::math::{each, normal_matrix, unit};
@@ -49,22 +52,34 @@ pub(crate) fn place_fragments<T: ShadingNumber>(
         let is_inside = at_centre.min_element() >= 0.0;
         let is_shared = fragments.shared && has_perspective;
         let weights = if is_inside || !is_shared { at_centre } else { barycentrics.weights(i) };
-        triangle.place(i, weights, origins);
+        let place = light_place(plan, [fragments.x[i], fragments.y[i]]);
+        triangle.place((i, place), weights, origins);
     }
 }
 
-/// Sets the points at which surfaces are lit that rays meet, from the triangle of each and its
-/// weights. Those in the mask `back` show their backs.
+/// Sets the points at which surfaces are lit that rays meet, from the triangle of each, its
+/// weights, and its place in the sequences of samples. Those in the mask `back` show their backs.
 pub(super) fn place_points<T: ShadingNumber>(
     group: &Group<'_, T>,
     of: (&Tracer<'_>, u32),
-    (points, back): (impl Iterator<Item = (u32, DVec3)>, u64),
+    (points, back): (impl Iterator<Item = (u32, DVec3, u32)>, u64),
     origins: &mut Origins,
 ) {
     origins.begin(Some(of.1), true);
-    for (i, (number, weights)) in points.enumerate() {
+    for (i, (number, weights, place)) in points.enumerate() {
         let is_back = back >> i & 1 == 1;
-        LitTriangle::new(group, of, (number, is_back), origins).place(i, weights, origins);
+        LitTriangle::new(group, of, (number, is_back), origins).place((i, place), weights, origins);
+    }
+}
+
+/// Returns the place of a pixel's samples in the sequences of lights. Samples that are lit one by
+/// one share those of their pixel.
+pub(super) fn light_place(plan: &FramePlan, [x, y]: [i32; 2]) -> u32 {
+    let [left, top] = plan.shift.map(|shift| (shift + SUBPIXELS / 2).div_euclid(SUBPIXELS));
+    let pixel = place_of_pixel([x + left, y + top]);
+    match plan.lit_by_sample {
+        true => pixel.wrapping_mul(plan.samples.count()).wrapping_add(plan.sample),
+        false => pixel,
     }
 }
 
@@ -95,13 +110,13 @@ impl LitTriangle {
         Self { number, corners, normals }
     }
 
-    /// Sets a point by its weights.
-    fn place(&self, i: usize, weights: DVec3, origins: &mut Origins) {
+    /// Sets a point by its weights and its place in the sequences of samples.
+    fn place(&self, (i, place): (usize, u32), weights: DVec3, origins: &mut Origins) {
         let Self { number, corners, normals } = self;
         // The point is moved off the edges, and its own triangle never shades it.
         let [y, z] = shares(weights);
         let at = within(corners, [y, z]);
-        origins.set(i, at, [*number, number + 1]);
+        origins.set(i, at, [*number, number + 1], place);
         if let Some(normals) = normals {
             let lift = lift(corners, normals, [1.0 - y - z, y, z], at);
             if lift != DVec3::ZERO {

@@ -35,7 +35,7 @@ pub(super) fn add_sky<T: ShadingNumber>(
     let mut skies: [Option<SkyAbove>; POINTS] = [None; POINTS];
     for i in Bits(reached) {
         let normal = DVec3::from(batch.normal.each_ref().map(|row| row[i].into()));
-        skies[i] = tracer.sky_above(&sky, scratch.origins.point(i), normal);
+        skies[i] = tracer.sky_above(&sky, scratch.origins.places[i], normal);
     }
     let mut samples: [Option<LightSample>; POINTS] = [None; POINTS];
     let mut colors = [[0.0; 3]; POINTS];

@@ -23,6 +23,7 @@ use crate::lights::{Batch, LightTerm, Rows, add_light};
 use crate::shadow::known::{BatchPixels, KnownPixels};
 use crate::shadow::map_face::{Reading, TAPS};
 use crate::shadow::rays::{Origins, RayScratch};
+use crate::shadow::sequence::place_of_point;
 use crate::shadow::shaft::POINTS;
 use crate::shadow::tracer::Tracer;
 use crate::shadow::tracer::filters::Shares;
@@ -229,7 +230,7 @@ pub(crate) fn place_vertices<T: Number>(
         let [x, y, z]: [f64; 3] = [*x, *y, *z].map(Into::into);
         // Computed like the casters' corners, so both are equal; adding 0 removes negative zeros.
         let at = world_from_object.transform_point3(DVec3::new(x + 0.0, y + 0.0, z + 0.0));
-        origins.set(i, at, [0; 2]);
+        origins.set(i, at, [0; 2], place_of_point(at));
     }
 }
 
@@ -249,6 +250,7 @@ pub(crate) fn place_faces<T: Number>(
         let centre = dvec3(mesh.facets()[polygon as usize].centre);
         let own = mesh.triangles_of(polygon);
         let ends = [own.start, own.end].map(|i| u32::try_from(i).unwrap_or(u32::MAX));
-        origins.set(i, world_from_object.transform_point3(centre), ends);
+        let at = world_from_object.transform_point3(centre);
+        origins.set(i, at, ends, place_of_point(at));
     }
 }

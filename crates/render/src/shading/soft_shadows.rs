@@ -29,7 +29,7 @@ pub(super) fn add_soft_light<T: ShadingNumber>(
     let (before, own) = ((first(&batch.diffuse), first(&batch.specular)), first(&batch.position));
     let (mut diffuse, mut specular) = (dark, dark);
     let count = batch.len.min(POINTS);
-    let mut balls: [Option<(SeenBall, u32)>; POINTS] = [None; POINTS];
+    let mut balls: [Option<SeenBall>; POINTS] = [None; POINTS];
     for (i, ball) in balls[..count].iter_mut().enumerate() {
         *ball = light.seen_from(scratch.origins.point(i));
     }
@@ -38,7 +38,8 @@ pub(super) fn add_soft_light<T: ShadingNumber>(
     let mut samples: [Option<LightSample>; POINTS] = [None; POINTS];
     for number in 0..light.samples {
         for i in 0..count {
-            samples[i] = balls[i].as_ref().map(|ball| SoftLight::sample(ball, number));
+            let place = scratch.origins.places[i];
+            samples[i] = balls[i].as_ref().map(|ball| light.sample(ball, place, number));
             let shift = samples[i].map_or(glam::DVec3::ZERO, |it| tracer.to_view(it.shift));
             for (axis, shift) in shift.to_array().into_iter().enumerate() {
                 let at: f64 = own[axis][i].into();

@@ -307,7 +307,8 @@ impl<T: ShadingNumber> Shader<T> {
             (None, _) => {}
             (Some(tracer), Origin::Pixels) => place_fragments(group, tracer, points, origins),
             (Some(tracer), Origin::Hits(hits)) => {
-                let hits = hits.iter().map(|point| (point.hit.triangle, point.hit.weights));
+                let hits = hits.iter();
+                let hits = hits.map(|it| (it.hit.triangle, it.hit.weights, it.place));
                 place_points(group, tracer, (hits, attributes.back), origins);
             }
         };

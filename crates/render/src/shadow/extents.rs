@@ -27,17 +27,19 @@ impl Sky<'_> {
     /// weighted by the density of both (Veach and Guibas, "Optimally Combining Sampling
     /// Techniques for Monte Carlo Rendering", SIGGRAPH 1995).
     pub(crate) fn sample(&self, above: &SkyAbove, number: u32) -> (LightSample, [f64; 3]) {
+        let number = above.first.wrapping_add(number);
+        let seed = seed_of(self.light);
         let Some(panorama) = self.panorama else {
-            let towards = above.around_normal(sequence_sample(number, above.seed));
+            let towards = above.around_normal(sequence_sample(number, seed));
             return (sample_of(towards), self.colors[usize::from(towards.y < 0.0)]);
         };
         if !panorama.has_lamps() {
-            let towards = above.around_normal(sequence_sample(number, above.seed));
-            return (sample_of(towards), panorama.around(towards).0);
+            let towards = above.around_normal(sequence_sample(number, seed));
+            return (sample_of(towards), panorama.spread(towards, self.samples));
         }
         let towards = match number % 2 {
-            0 => above.around_normal(sequence_sample(number / 2, above.seed)),
-            _ => panorama.towards_lamp(sequence_sample(number / 2, above.seed ^ LAMPS)),
+            0 => above.around_normal(sequence_sample(number / 2, seed)),
+            _ => panorama.towards_lamp(sequence_sample(number / 2, seed ^ LAMPS)),
         };
         let cosine = above.normal.dot(towards).max(0.0) / std::f64::consts::PI;
         let (light, density) = panorama.around(towards);
@@ -45,10 +47,10 @@ impl Sky<'_> {
         (sample_of(towards), light.map(|it| it * weight))
     }
 
-    /// Returns the sky above a point with a normal.
-    pub(super) fn above(&self, point: DVec3, normal: DVec3) -> SkyAbove {
+    /// Returns the sky above a point with a normal and a place in the sequence of samples.
+    pub(super) fn above(&self, place: u32, normal: DVec3) -> SkyAbove {
         let (right, up) = normal.any_orthonormal_pair();
-        SkyAbove { normal, right, up, seed: seed_of(point, self.light) }
+        SkyAbove { normal, right, up, first: place.wrapping_mul(self.samples) }
     }
 }
 
@@ -66,7 +68,8 @@ pub(crate) struct SkyAbove {
     normal: DVec3,
     right: DVec3,
     up: DVec3,
-    seed: u32,
+    /// The number of its first sample.
+    first: u32,
 }
 
 impl SkyAbove {
@@ -90,13 +93,14 @@ pub(crate) struct SoftLight {
 }
 
 impl SoftLight {
-    /// Returns the light as it is seen from a point, with the seed of its samples there.
-    pub(crate) fn seen_from(&self, point: DVec3) -> Option<(SeenBall, u32)> {
-        Some((self.ball.seen_from(point)?, seed_of(point, self.light)))
+    /// Returns the light as it is seen from a point.
+    pub(crate) fn seen_from(&self, point: DVec3) -> Option<SeenBall> {
+        self.ball.seen_from(point)
     }
 
-    /// Returns a sample of the light.
-    pub(crate) fn sample(&(ball, seed): &(SeenBall, u32), number: u32) -> LightSample {
-        ball.sample(sequence_sample(number, seed))
+    /// Returns a sample of the light at a place in the sequence.
+    pub(crate) fn sample(&self, ball: &SeenBall, place: u32, number: u32) -> LightSample {
+        let number = place.wrapping_mul(self.samples).wrapping_add(number);
+        ball.sample(sequence_sample(number, seed_of(self.light)))
     }
 }

@@ -45,7 +45,7 @@ pub(crate) mod maps;
 pub(crate) mod patches;
 pub(crate) mod prepared_block;
 pub(crate) mod rays;
-mod sequence;
+pub(crate) mod sequence;
 pub(crate) mod shaft;
 pub(crate) mod tracer;
 pub(crate) mod triangle;

@@ -125,7 +125,7 @@ mod tests {
         let points = squares.iter().flat_map(|(at, columns)| {
             (0..8 * columns).map(move |i| at + DVec3::new((i / 8) as f64, (i % 8) as f64, 0.0))
         });
-        points.enumerate().for_each(|(i, point)| origins.set(i, point, [0; 2]));
+        points.enumerate().for_each(|(i, point)| origins.set(i, point, [0; 2], 0));
         origins
     }
 
@@ -157,7 +157,7 @@ mod tests {
             for i in 0..len {
                 // Clustered points, so gaps of every width occur.
                 let cluster = DVec3::new(number(1), number(1), number(1)) * (round % 50) as f64;
-                origins.set(i, cluster + DVec3::new(number(9), number(9), number(9)), [0; 2]);
+                origins.set(i, cluster + DVec3::new(number(9), number(9), number(9)), [0; 2], 0);
             }
             origins.find_patches(|_, _| None);
             assert!(origins.patches.len() <= MOST);

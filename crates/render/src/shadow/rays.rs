@@ -12,6 +12,8 @@ use crate::rays::{Frontier, OwnTriangles, Ray, RayStack};
 #[derive(Debug)]
 pub(crate) struct Origins {
     pub(crate) at: [[f64; POINTS]; 3],
+    /// The places of the points in the sequences of samples of lights.
+    pub(crate) places: [u32; POINTS],
     /// The caster that the points lie on, if it casts shadows itself.
     pub(crate) caster: Option<u32>,
     /// The range of the caster's triangles that each point lies on: from `first` up to but
@@ -33,6 +35,7 @@ impl Default for Origins {
     fn default() -> Self {
         Self {
             at: [[0.0; POINTS]; 3],
+            places: [0; POINTS],
             caster: None,
             first: [0; POINTS],
             end: [0; POINTS],
@@ -65,9 +68,11 @@ impl Origins {
         self.patches.clear();
     }
 
-    /// Sets a point and its range of triangles. Points are set in order.
+    /// Sets a point, its range of triangles, and its place in the sequences of samples. Points are
+    /// set in order.
     #[inline(always)]
-    pub(crate) fn set(&mut self, i: usize, at: DVec3, triangles: [u32; 2]) {
+    pub(crate) fn set(&mut self, i: usize, at: DVec3, triangles: [u32; 2], place: u32) {
+        self.places[i] = place;
         for (row, x) in self.at.iter_mut().zip(at.to_array()) {
             row[i] = x;
         }
@@ -78,7 +83,7 @@ impl Origins {
     /// Moves a point off its triangle, which still does not shade it.
     pub(crate) fn lift(&mut self, i: usize, at: DVec3) {
         let triangles = [self.first[i], self.end[i]];
-        self.set(i, at, triangles);
+        self.set(i, at, triangles, self.places[i]);
         self.lifted |= 1 << i;
     }
 

@@ -1,9 +1,13 @@
-//! Points of the unit square for the samples of a light: the (0, 2)-sequence of Sobol', scrambled
-//! for each point that is lit.
+//! Points of the unit square for the samples of a light: one (0, 2)-sequence of Sobol' for each
+//! light, scrambled. Each pixel takes a part of it.
 //!
 //! Of any 2^k points that begin at a multiple of 2^k, one lies in each cell of every grid of 2^k
 //! equal cells. Scrambling keeps that (Owen, "Randomly Permuted (t, m, s)-Nets", 1995), and makes
-//! noise instead of stripes. All is done in integers: the points are the same everywhere.
+//! noise instead of stripes. Pixels take their parts along a Z-curve, so the samples of each square
+//! of 2^k pixels are spread as evenly as those of one: what is too bright in a pixel is too dark
+//! beside it, and noise is fine instead of coarse (Ahmed and Wonka, "Screen-space Blue-noise
+//! Diffusion of Monte Carlo Sampling Error via Hierarchical Ordering of Pixels", 2020). All is done
+//! in integers: the points are the same everywhere.
 //!
 //! Kollig and Keller, "Efficient Multidimensional Sampling", Eurographics 2002; Burley, "Practical
 //! Hash-based Owen Scrambling", JCGT 2020; Vegdahl, "Building a Better LK Hash", 2021.
@@ -44,15 +48,36 @@ const fn scrambled(bits: u32, seed: u32) -> u32 {
     x.reverse_bits()
 }
 
-/// Returns the seed of a point for a light. Equal points have equal seeds.
-pub(super) fn seed_of(point: DVec3, light: u32) -> u32 {
-    let fold = |seed: u32, x: f64| {
+/// Returns the seed of the sequence of a light.
+pub(super) const fn seed_of(light: u32) -> u32 {
+    mixed(light.wrapping_add(0x9e37_79b9))
+}
+
+/// Returns the place of a pixel along a Z-curve, from its column and row.
+pub(crate) fn place_of_pixel(pixel: [i32; 2]) -> u32 {
+    let [x, y] = pixel.map(|at| {
+        let spread = |x: u32, by: u32, mask: u32| (x | x << by) & mask;
+        let x = spread(at.cast_unsigned() & 0xffff, 8, 0x00ff_00ff);
+        let x = spread(x, 4, 0x0f0f_0f0f);
+        spread(spread(x, 2, 0x3333_3333), 1, 0x5555_5555)
+    });
+    x | y << 1
+}
+
+/// Returns a place in the sequence for a point without a pixel. Equal points have equal places.
+pub(crate) fn place_of_point(point: DVec3) -> u32 {
+    point.to_array().into_iter().fold(0, |place, x| {
         // Adding 0 turns -0 into 0.
         let bits = (x + 0.0).to_bits();
         let [low, high] = [bits & 0xffff_ffff, bits >> 32].map(|x| u32::try_from(x).unwrap_or(0));
-        mixed(mixed(seed ^ low) ^ high)
-    };
-    point.to_array().into_iter().fold(mixed(light.wrapping_add(0x9e37_79b9)), fold)
+        mixed(mixed(place ^ low) ^ high)
+    })
+}
+
+/// Returns the place of the points that a pixel's rays meet after this many bounces.
+pub(crate) const fn after_bounces(place: u32, bounces: u32) -> u32 {
+    // All places change alike, so those of squares of pixels stay together.
+    place ^ mixed(bounces)
 }
 
 /// Mixes the bits of a number: a permutation. Wellons, "Prospecting for Hash Functions", 2018.
@@ -89,19 +114,38 @@ mod tests {
     }
 
     #[test]
-    fn each_point_has_its_own_sequence() {
-        let seed = |x: f64, light| seed_of(DVec3::new(x, 0.0, 1.0), light);
-        assert_eq!(seed(0.0, 1), seed(-0.0, 1));
-        let mut seeds: Vec<u32> = (0..1000).map(|i| seed(f64::from(i) * 1e-9, i % 3)).collect();
-        seeds.sort_unstable();
-        seeds.dedup();
-        assert_eq!(seeds.len(), 1000);
+    fn points_without_pixels_have_their_own_places() {
+        let place = |x: f64| place_of_point(DVec3::new(x, 0.0, 1.0));
+        assert_eq!(place(0.0), place(-0.0));
+        let mut places: Vec<u32> = (0..1000).map(|i| place(f64::from(i) * 1e-9)).collect();
+        places.sort_unstable();
+        places.dedup();
+        assert_eq!(places.len(), 1000);
         // Their first samples are spread evenly.
         let mut cells = [0_u32; 16];
         for i in 0..16_000 {
-            let [x, y] = sample(0, seed(f64::from(i), 0));
+            let [x, y] = sample(place(f64::from(i)).wrapping_mul(16), seed_of(0));
             cells[(x * 4.0) as usize * 4 + (y * 4.0) as usize] += 1;
         }
         assert!(cells.iter().all(|n| (850..1150).contains(n)), "{cells:?}");
+    }
+
+    #[test]
+    fn the_samples_of_a_square_of_pixels_are_as_even_as_those_of_one() {
+        assert_eq!(place_of_pixel([0xffff, 0]), 0x5555_5555);
+        assert_eq!(place_of_pixel([0b101, 0b011]), 0b01_10_11);
+        // Four samples of each of 8 x 8 pixels: one in each of 16 x 16 cells, after bounces, too.
+        for (light, bounces) in [(0, 0), (3, 0), (3, 1), (7, 4)] {
+            let mut cells = [0; 256];
+            for i in 0..64 {
+                let place = place_of_pixel([8 * 5 + i % 8, 8 * 9 + i / 8]);
+                for number in 0..4 {
+                    let number = after_bounces(place, bounces).wrapping_mul(4) + number;
+                    let [x, y] = sample(number, seed_of(light)).map(|x| (x * 16.0) as usize);
+                    cells[16 * y + x] += 1;
+                }
+            }
+            assert!(cells.iter().all(|n| *n == 1), "light {light}, {bounces} bounces: {cells:?}");
+        }
     }
 }

@@ -191,11 +191,12 @@ impl<'a> Tracer<'a> {
         self.skies.get(light as usize).copied().flatten()
     }
 
-    /// Returns the sky above a point with a normal in view space; `None` without a normal.
-    pub(crate) fn sky_above(&self, sky: &Sky<'_>, point: DVec3, normal: DVec3) -> Option<SkyAbove> {
+    /// Returns the sky above a point with a normal in view space and a place in the sequence of
+    /// samples; `None` without a normal.
+    pub(crate) fn sky_above(&self, sky: &Sky<'_>, place: u32, normal: DVec3) -> Option<SkyAbove> {
         // The view transform turns and scales evenly.
         let normal = unit(self.view_from_world.transpose() * normal)?;
-        Some(sky.above(point, normal))
+        Some(sky.above(place, normal))
     }
 
     /// Transforms a vector to view space.

@@ -64,7 +64,7 @@ fn traced(shadows: &Shadows, points: &[Point]) -> u64 {
     let mut scratch = RayScratch::default();
     scratch.origins.begin(None, false);
     for (i, point) in points.iter().enumerate() {
-        scratch.origins.set(i, float(*point), [0; 2]);
+        scratch.origins.set(i, float(*point), [0; 2], 0);
     }
     let mask = u64::MAX >> (64 - points.len());
     let light = tracer.light(0).expect("it casts shadows");
