@@ -2,7 +2,7 @@
 //!
 //! `obvhs` builds the tree from boxes scaled to the unit cube, so it never meets infinities. It
 //! takes quadratic time for boxes that coincide, so equal boxes are merged into one leaf first. The
-//! boxes of the finished tree exactly bound the unscaled triangles. A leaf stores its triangles in
+//! boxes of the finished tree exactly bound the unscaled triangles, or parts of long ones. A leaf stores its triangles in
 //! blocks of eight, coordinate by coordinate, so SIMD code prepares eight at once.
 //!
 //! Meister and Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy
@@ -24,6 +24,7 @@ use marraztu_core::scene::{Accelerator, AcceleratorPlace, Mesh};
 
 use super::draw_order::index;
 use super::eight_boxes::{Box3, EMPTY, EightBoxes, union};
+use super::slivers::split;
 
 /// A BVH of a mesh's triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -205,7 +206,7 @@ impl Bvh {
         let mut flat = Self::default();
         // Nodes to be copied, each with the node and child slot that refers to it.
         let mut open = vec![(0, None::<(usize, usize)>)];
-        let mut triangles = Vec::new();
+        let (mut triangles, mut around) = (Vec::new(), EMPTY);
         // Depth first and the first child next, so subtrees are neighbours in memory.
         while let Some((place, parent)) = open.pop() {
             let node = &tree.nodes[place];
@@ -219,7 +220,9 @@ impl Bvh {
                 // A leaf of the binary tree refers to groups; it gets the triangles of all of them.
                 let leaf = node.first_index as usize..(node.first_index + node.prim_count) as usize;
                 triangles.clear();
+                around = EMPTY;
                 for group in &tree.primitive_indices[leaf] {
+                    around = union(around, groups.boxes[*group as usize]);
                     let own = groups.starts[*group as usize]..groups.starts[*group as usize + 1];
                     triangles.extend_from_slice(&groups.triangles[own]);
                 }
@@ -231,8 +234,7 @@ impl Bvh {
                     flat.nodes[at].children[child] = own;
                     // Boxes of inner nodes wait for their children: see below.
                     if own.count > 0 {
-                        let around = triangles.iter().map(|own| box_of(&own.corners));
-                        flat.nodes[at].boxes.set(child, around.fold(EMPTY, union));
+                        flat.nodes[at].boxes.set(child, around);
                     }
                 }
             }
@@ -293,7 +295,7 @@ impl Groups {
                 |corner: usize| each(positions[mesh.vertex_of(corner) as usize], |x| x + 0.0);
             each(mesh.triangle(number as usize), place)
         };
-        let mut all: Vec<BvhTriangle> = (0..index(mesh.triangle_count()))
+        let mut all: Vec<(Box3, BvhTriangle)> = (0..index(mesh.triangle_count()))
             .into_par_iter()
             .map(|number| BvhTriangle { corners: corners(number), number })
             // With two equal corners, a triangle is a line and blocks no ray.
@@ -301,22 +303,24 @@ impl Groups {
                 let [a, b, c] = it.corners;
                 a != b && b != c && c != a
             })
+            .map(|it| (box_of(&it.corners), it))
             .collect();
+        split(&mut all);
         let part = |it: &BvhTriangle| mesh.polygon_parts()[mesh.polygon_of(it.number) as usize];
-        let key = |it: &BvhTriangle| (bits(&box_of(&it.corners)), part(it), sorted(&it.corners));
+        let key = |it: &BvhTriangle| (part(it), sorted(&it.corners));
         // Sorting by box brings the triangles of a group together.
-        all.par_sort_unstable_by_key(|it| (bits(&box_of(&it.corners)), it.number));
+        all.par_sort_unstable_by_key(|(around, it)| (bits(around), it.number));
         let mut groups = Self::default();
-        for own in all.chunk_by_mut(|a, b| box_of(&a.corners) == box_of(&b.corners)) {
+        for own in all.chunk_by_mut(|(a, _), (b, _)| a == b) {
             // Two triangles are neighbours in any order, so only larger groups need the sort.
             if own.len() > 2 {
-                own.sort_by_key(|it| (key(it), it.number));
+                own.sort_by_key(|(_, it)| (key(it), it.number));
             }
-            groups.boxes.push(box_of(&own[0].corners));
+            groups.boxes.push(own[0].0);
             groups.starts.push(groups.triangles.len());
             // After sorting by key, triangles that coincide in one part follow each other.
             let mut last = None;
-            for it in &*own {
+            for (_, it) in &*own {
                 let this = Some(key(it));
                 if this != last {
                     groups.triangles.push(*it);

@@ -9,6 +9,7 @@ mod clusters;
 mod draw_order;
 mod edge_order;
 mod eight_boxes;
+mod slivers;
 
 pub use accelerated::Accelerated;
 pub use bvh::{BVH_BLOCK, Bvh, BvhBlock, BvhChild, BvhNode, BvhTriangle};
