@@ -9,6 +9,8 @@
 #![allow(clippy::cast_possible_truncation, reason = "small numbers")]
 #![expect(clippy::unwrap_used, reason = "a helper of tests that fails is a test that fails")]
 
+use std::f64::consts::{PI, TAU};
+
 mod common;
 
 use common::{at, ball, cube, draw, edit, model_of, scene, square};
@@ -207,7 +209,7 @@ fn glass_of_index_1_is_invisible_and_its_filter_colours_twice() {
 fn facing_mirrors_add_up_as_many_terms_of_a_series_as_there_are_bounces() {
     // Each emits 0.1 and mirrors a half.
     let emitting = Material { emission: [0.1; 3], ..mirror(0.5) };
-    let behind = DMat4::from_rotation_y(std::f64::consts::PI);
+    let behind = DMat4::from_rotation_y(PI);
     let (mut scene, view) = scene(&[
         (square(), at(900.0, 0.0, 0.0, -10.0)),
         (square(), DMat4::from_translation(DVec3::Z * 10.0) * behind * at(900.0, 0.0, 0.0, 0.0)),
@@ -527,4 +529,54 @@ fn a_reflection_map_takes_the_place_of_the_background_and_with_illum_8_of_everyt
     assert!(near(top, [80, 5, 175]), "{top:?} {findings:?}");
     let (bottom, _) = seen(&format!("illum 8\n{cube}"), 0.7, false);
     assert!(bottom[0].abs_diff(120) < 12, "{bottom:?}");
+}
+
+/// A ball of glass, as programs write it: the last corner of each ring lies `seam` beside the
+/// first. Before these faces, another group begins.
+fn glass_ball(seam: f64, groups: &[usize], left_out: usize) -> String {
+    let (rings, columns) = (12, 24);
+    let mut text = "mtllib a.mtl\nusemtl glass\n".to_owned();
+    for (ring, column) in (0..=rings).flat_map(|i| (0..=columns).map(move |j| (i, j))) {
+        let (down, height) = libm::sincos(PI * f64::from(ring) / f64::from(rings));
+        let (x, z) = libm::sincos(TAU * f64::from(column % columns) / f64::from(columns));
+        let x = if column == columns { -seam } else { x };
+        text += &format!("v {:e} {height:e} {:e}\n", down * x, down * z);
+    }
+    let mut faces = Vec::new();
+    for (ring, column) in (0..rings).flat_map(|i| (0..columns).map(move |j| (i, j))) {
+        let a = ring * (columns + 1) + column + 1;
+        let (b, c) = (a + 1, a + columns + 1);
+        faces.extend((ring > 0).then(|| format!("f {a} {c} {b}\n")));
+        faces.extend((ring + 1 < rings).then(|| format!("f {b} {c} {}\n", c + 1)));
+    }
+    for (i, face) in faces.iter().enumerate().skip(left_out) {
+        if groups.contains(&i) {
+            text += &format!("g group{i}\n");
+        }
+        text += face;
+    }
+    text
+}
+
+#[test]
+fn a_body_of_glass_that_a_file_splits_refracts_as_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("ball.obj");
+    let glass = "newmtl glass\nKd 0 0 0\nKs 0 0 0\nTf 1 1 1\nNi 1.5\nillum 7\n";
+    std::fs::write(folder.path().join("a.mtl"), glass).unwrap();
+    let seen = |text: String| {
+        std::fs::write(&path, text).unwrap();
+        let loaded = io::load(&path, &LoadOptions::default(), &Progress::new()).unwrap();
+        let ball = (loaded.model.into(), at(60.0, 0.0, 0.0, 60.0));
+        let (mut scene, view) = scene(&[ball, (cube(), at(70.0, 90.0, 20.0, -120.0))]);
+        edit(&mut scene, ObjectId(10), |ball| ball.material = MaterialChoice::File);
+        paint(&mut scene, 11, Material::matte([0.2; 3], [0.8, 0.4, 0.1]));
+        draw(&scene, &View { marks: false, ..view }, &Settings::default(), SIDE)
+    };
+    let whole = seen(glass_ball(0.0, &[], 0));
+    assert_eq!(seen(glass_ball(0.0, &[100], 0)), whole, "two groups");
+    assert_eq!(seen(glass_ball(0.0, &[1, 2, 77, 200], 0)), whole, "five groups");
+    assert_eq!(seen(glass_ball(2.5e-16, &[150], 0)), whole, "a seam that is computed in two ways");
+    let open = seen(glass_ball(0.0, &[100], 1));
+    assert!(differ(&open, &whole).1 > 0.05, "an open surface does not bend light");
 }

@@ -35,6 +35,7 @@ impl Compared<'_> {
             normal_source,
             part_pipelines,
             uniform: _,
+            bodies,
             polygons,
             filled,
             lines,
@@ -53,6 +54,7 @@ impl Compared<'_> {
             || *polygons != before.polygons
             || *filled != before.filled
             || *strokes != before.strokes
+            || *bodies != before.bodies
             || lines_key(lines) != lines_key(&before.lines)
             || (lines.vertex_normals.is_some() && *normal_source != before.normal_source)
             || self.kinds(part_pipelines, &before.part_pipelines);

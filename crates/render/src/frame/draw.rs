@@ -32,6 +32,9 @@ pub(crate) struct Draw {
     pub(crate) part_pipelines: Vec<Option<u32>>,
     /// The pipeline of all parts, if they share one.
     pub(crate) uniform: Option<u32>,
+    /// The body of glass that each part belongs to: the number of its first part. Empty if each
+    /// part is a body of its own.
+    pub(crate) bodies: Vec<u32>,
     /// The polygons to draw, if not all are drawn.
     pub(crate) polygons: Option<BTreeSet<u32>>,
     pub(crate) filled: bool,

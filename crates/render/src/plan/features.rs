@@ -406,7 +406,7 @@ fn without_rays(
         Some(reason) => reason,
         None if !is_asked => otherwise,
         None if it.settings.bounces == Bounces::None => "0 bounces",
-        None => "Ks is 0, or it is not lit",
+        None => "it is not lit, or its Ks, Tf or transparency is 0",
     }
 }
 

@@ -9,6 +9,7 @@ use super::features::presence;
 use super::helpers;
 use super::observer::ObserverSpace;
 use super::planning::{Ground, Planner, Planning};
+use super::rays::numbers_of;
 use super::rules::Thing;
 use super::turning::{shows_fronts_only, turning_of};
 use super::uses::{self, EffectState, EffectUse};
@@ -127,6 +128,7 @@ impl Planner<'_> {
             normal_source: NormalSource::File,
             part_pipelines: Vec::new(),
             uniform: None,
+            bodies: Vec::new(),
             polygons: None,
             filled: self.shot.view.fill == Fill::Filled,
             lines: Lines::NONE,
@@ -204,8 +206,10 @@ impl Planner<'_> {
                 true => None,
                 false => turning_of(&draw, self.shot.settings.light),
             };
-            let ground = Ground { item, object, region, turning, tiled, seen };
+            let bodies = self.bodies(object);
+            let ground = Ground { item, object, region, turning, tiled, seen, bodies };
             draw.part_pipelines = self.part_pipelines(into, &ground);
+            draw.bodies = numbers_of(&ground.bodies);
         }
         draw.uniform = uniform(&draw.part_pipelines);
         self.note_features(into, object, &draw);

@@ -75,6 +75,9 @@ pub(super) struct Ground<'a> {
     pub(super) tiled: bool,
     /// Whether the colours of the surfaces are visible.
     pub(super) seen: bool,
+    /// The closed body of glass that each part belongs to, as the number of its first part. Empty
+    /// without glass.
+    pub(super) bodies: Vec<Option<u32>>,
 }
 
 impl Ground<'_> {

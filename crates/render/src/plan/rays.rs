@@ -44,6 +44,36 @@ impl Planner<'_> {
         .filter(|filter| *filter != [0.0; 3])
     }
 
+    /// Returns the closed body of glass that each part of an object belongs to, as the number of
+    /// its first part: one that is closed by itself, or all open parts of one glass together, if
+    /// these are. Files split bodies by groups and materials.
+    pub(super) fn bodies(&self, object: &Object) -> Vec<Option<u32>> {
+        let mesh = &object.model.mesh;
+        let glass = object.shown_parts().filter_map(|part| {
+            let optics = object.part_look(part).material.optics;
+            (optics.transmission != Transmission::None).then_some((part, optics))
+        });
+        let mut glass: Vec<(u32, Optics)> = glass.collect();
+        if glass.is_empty() || self.shot.settings.bounces == Bounces::None {
+            return Vec::new();
+        }
+        let mut bodies = vec![None; mesh.parts().len()];
+        glass.retain(|(part, _)| {
+            let is_closed = mesh.are_parts_closed(&[*part]);
+            bodies[*part as usize] = is_closed.then_some(*part);
+            !is_closed
+        });
+        while !glass.is_empty() {
+            let (first, own) = glass.remove(0);
+            let same = glass.extract_if(.., |(_, optics)| *optics == own);
+            let same: Vec<u32> = std::iter::once(first).chain(same.map(|(part, _)| part)).collect();
+            if mesh.are_parts_closed(&same) {
+                same.iter().for_each(|part| bodies[*part as usize] = Some(first));
+            }
+        }
+        bodies
+    }
+
     /// Returns the rays of a lit part, if it mirrors or refracts.
     pub(super) fn rays(
         &self,
@@ -67,7 +97,7 @@ impl Planner<'_> {
             },
             index: if Optics::INDICES.contains(&index) { index } else { 1.0 },
             map: mapped(ground, look, MapKind::Specular).map(|map| map.texture.clone()),
-            is_closed: ground.object.model.mesh.is_part_closed(part),
+            is_closed: ground.bodies.get(part as usize).copied().flatten().is_some(),
             environment: look.environment.map(|Environment { panorama, is_alone }| {
                 let sky = SkyPanorama { panorama: panorama.clone(), turn: 0.0, is_shown: false };
                 let is_linear = plan.variants.are_linear();
@@ -104,6 +134,15 @@ impl Planner<'_> {
         Planner { shot: &shot, observer, shining, is_around: true }.add_objects(&mut around);
         into.plan.surroundings = Some(Box::new(around.plan));
     }
+}
+
+/// Returns the number of the body of each part; nothing if each part is a body of its own.
+pub(super) fn numbers_of(bodies: &[Option<u32>]) -> Vec<u32> {
+    let numbered = (0..).zip(bodies);
+    if numbered.clone().all(|(part, body): (u32, _)| body.is_none_or(|body| body == part)) {
+        return Vec::new();
+    }
+    numbered.map(|(part, body)| body.unwrap_or(part)).collect()
 }
 
 /// Returns a fraction from 0 to 1. Files and scripts may hold any number.

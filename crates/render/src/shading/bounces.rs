@@ -442,7 +442,8 @@ fn send_on(it: &Sender<'_>, branch: &Branch, to: &mut Vec<Branch>) {
     // Only closed bodies have an inside.
     let part = it.draw.model.mesh.polygon_of(it.own.first);
     let part = it.draw.model.mesh.polygon_parts()[part as usize];
-    let body = u64::from(it.own.thing) << 32 | u64::from(part);
+    let body = it.draw.bodies.get(part as usize).copied().unwrap_or(part);
+    let body = u64::from(it.own.thing) << 32 | u64::from(body);
     let (indices, media) = match *is_closed && transmits {
         true => branch.media.across(body, *index, it.is_front),
         false => ([1.0, *index], branch.media),

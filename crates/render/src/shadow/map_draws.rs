@@ -268,6 +268,7 @@ fn draw(caster: &Caster, pipelines: &mut Vec<Pipeline>) -> Draw {
         normals: Normals::Vertex,
         normal_source: NormalSource::Computed,
         uniform: uniform(&part_pipelines),
+        bodies: Vec::new(),
         part_pipelines,
         polygons: caster.polygons.clone(),
         filled: true,

@@ -9,7 +9,7 @@ use prefetch_index::prefetch_index;
 use rayon::prelude::*;
 
 use super::accelerator::AnyAccelerator;
-use super::closed::boundaries;
+use super::closed::{boundaries, key, key_in_steps};
 use super::tangents::CornerTangents;
 use crate::base::math::each;
 use crate::base::once::get_or_compute;
@@ -57,6 +57,9 @@ pub enum Derived {
     Edges,
 }
 
+/// The steps that corners are rounded to, to find the same ones: a part of the mesh's extent.
+const WELDED: f64 = 1.0 / (1_u64 << 20) as f64;
+
 /// The derived data that has been computed so far.
 #[derive(Default)]
 pub(crate) struct Found {
@@ -75,6 +78,7 @@ pub(crate) struct FoundOfShape {
     edges: OnceLock<Edges>,
     pub(super) edge_order: AnyAccelerator,
     boundaries: OnceLock<Vec<u64>>,
+    welded_boundaries: OnceLock<Vec<u64>>,
     pub(super) bvh: AnyAccelerator,
 }
 
@@ -245,15 +249,31 @@ impl Mesh {
         removed.fold(sum, u64::wrapping_sub) == 0
     }
 
-    /// Returns whether the polygons of a part form closed surfaces by themselves.
-    pub fn is_part_closed(&self, part: u32) -> bool {
-        self.boundaries().get(part as usize) == Some(&0)
+    /// Returns whether the polygons of these parts form closed surfaces together. Corners that
+    /// differ by far less than a millionth of the mesh are one: some generators compute the ends
+    /// of a seam in two ways.
+    pub fn are_parts_closed(&self, parts: &[u32]) -> bool {
+        let is_closed = |all: &[u64]| {
+            let own = parts.iter().filter_map(|part| all.get(*part as usize));
+            own.fold(0, |sum: u64, own| sum.wrapping_add(*own)) == 0
+        };
+        is_closed(self.boundaries()) || is_closed(self.welded_boundaries())
     }
 
     /// Returns the sum of the boundaries of each part.
     fn boundaries(&self) -> &[u64] {
         get_or_compute::<Vec<_>>(&self.shape.found.boundaries, || {
-            boundaries(&self.outlines(), self.polygon_parts(), self.parts().len())
+            boundaries(&self.outlines(), self.polygon_parts(), self.parts().len(), key)
+        })
+    }
+
+    /// Returns the same with corners rounded.
+    fn welded_boundaries(&self) -> &[u64] {
+        get_or_compute::<Vec<_>>(&self.shape.found.welded_boundaries, || {
+            let extent = self.bounds().map_or(0.0, |bounds| bounds.extent().max_element());
+            let step = (extent * WELDED).max(f64::MIN_POSITIVE);
+            let key = |place| key_in_steps(place, step);
+            boundaries(&self.outlines(), self.polygon_parts(), self.parts().len(), key)
         })
     }
 

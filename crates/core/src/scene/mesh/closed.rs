@@ -24,7 +24,12 @@ const SHARE: usize = 4096;
 /// Returns S of each of `parts` parts. Parts with a total of 0 form closed surfaces, each with one
 /// side outside. If the orientation of a polygon differs from its neighbour's, their edge is
 /// traversed twice in one direction, so the surface is open.
-pub(super) fn boundaries(outlines: &Outlines<'_>, polygon_parts: &[u32], parts: usize) -> Vec<u64> {
+pub(super) fn boundaries(
+    outlines: &Outlines<'_>,
+    polygon_parts: &[u32],
+    parts: usize,
+    key: impl Fn([f32; 3]) -> u64 + Sync,
+) -> Vec<u64> {
     let keys: Vec<u64> = outlines.places.par_iter().map(|place| key(*place)).collect();
     let sums: Vec<AtomicU64> = (0..parts).map(|_| AtomicU64::new(0)).collect();
     polygon_parts.par_chunks(SHARE).enumerate().for_each(|(share, parts)| {
@@ -64,6 +69,13 @@ pub(super) fn boundary(vertices: &[u32], keys: &[u64]) -> u64 {
 pub(super) fn key([x, y, z]: [f32; 3]) -> u64 {
     let bits = |x: f32| u64::from((x + 0.0).to_bits());
     mixed(mixed(bits(x) << 32 | bits(y)) ^ bits(z))
+}
+
+/// Hashes a position rounded to multiples of `step`: corners that differ far less are mostly one.
+#[expect(clippy::cast_possible_truncation, reason = "rounded to whole steps, saturating")]
+pub(super) fn key_in_steps(place: [f32; 3], step: f64) -> u64 {
+    let [x, y, z] = place.map(|x| (f64::from(x) / step).round() as i64 as u64);
+    mixed(mixed(mixed(x).wrapping_add(y)).wrapping_add(z))
 }
 
 /// Applies the mixing function of SplitMix64, a permutation of the 64-bit numbers: Steele, Lea and
