@@ -35,6 +35,9 @@ pub(super) fn load_panorama_within(path: &Path, most: usize) -> Result<Panorama,
 /// Decodes the panorama of a file with at most this number of texels.
 pub(super) fn panorama_of(path: &Path, content: &[u8], most: usize) -> Result<Panorama, LoadError> {
     let most = most.min(Panorama::MOST_TEXELS);
+    // Some programs sign their Radiance files with the name of the encoding.
+    let signed = content.strip_prefix(b"#?RGBE").map(|rest| [&b"#?RADIANCE"[..], rest].concat());
+    let content = signed.as_deref().unwrap_or(content);
     let (decoded, cut_off) = decode_bytes(path, content, most, &FLOAT_FORMATS)?;
     let damaged = || LoadError::file(&shown(path), "the picture is damaged");
     if cut_off {
@@ -124,6 +127,19 @@ mod tests {
         let panorama = loaded("sky.png", &image::DynamicImage::from(bytes));
         let seen = panorama.light(false).seen(towards, 0.0);
         assert!((seen[0] - 0.2).abs() < 1e-6 && (seen[2] - 1.0).abs() < 1e-6, "{seen:?}");
+    }
+
+    #[test]
+    fn radiance_files_may_be_signed_with_their_encoding() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.hdr");
+        let texels = [128, 64, 32, 129].repeat(2);
+        for name in ["RADIANCE", "RGBE"] {
+            let head = format!("#?{name}\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n");
+            std::fs::write(&path, [head.as_bytes(), &texels].concat()).unwrap();
+            let [seen, ..] = load_panorama(&path).unwrap().light(true).seen(glam::DVec3::X, 0.0);
+            assert!((seen - 1.0).abs() < 0.02, "{name}: {seen}");
+        }
     }
 
     #[test]

@@ -49,8 +49,11 @@ pub fn texture_endings() -> Vec<&'static str> {
 }
 
 /// The error for a file of another kind.
-fn unknown() -> String {
-    format!("this is not a {}", texture_formats())
+fn unknown(floats: &[ImageFormat]) -> String {
+    match floats {
+        [] => format!("this is not a {}", texture_formats()),
+        _ => format!("this is neither a Radiance HDR or OpenEXR file nor a {}", texture_formats()),
+    }
 }
 
 /// Loads a texture that the user chooses: it repeats, and uses the model's texture coordinates.
@@ -199,7 +202,7 @@ pub(super) fn decode_bytes(
     let is_known =
         |format: ImageFormat| floats.contains(&format) || !FLOAT_FORMATS.contains(&format);
     if !reader.format().is_some_and(is_known) {
-        return Err(fail(unknown()));
+        return Err(fail(unknown(floats)));
     }
     let cut_off = reader.format() == Some(ImageFormat::Jpeg) && jpeg_ends_early(bytes);
     let states_no_alpha = reader.format() == Some(ImageFormat::Tga) && tga_states_no_alpha(bytes);
@@ -220,7 +223,7 @@ pub(super) fn decode_bytes(
     // A decoder that panics on a damaged file must not crash the editor.
     let mut decoded = std::panic::catch_unwind(std::panic::AssertUnwindSafe(decoded))
         .map_err(|_panic| fail("the picture is damaged".to_owned()))?
-        .map_err(|error| fail(reason(&error)))?
+        .map_err(|error| fail(reason(&error, floats)))?
         .ok_or_else(|| too_many_texels(path))?;
     // Some programs write alpha without stating it, so only an empty channel is ignored.
     if states_no_alpha
@@ -276,7 +279,7 @@ pub(super) fn own_picture(content: &[u8]) -> Option<Picture> {
     picture(image::load_from_memory(content).ok()?)
 }
 
-fn reason(error: &image::ImageError) -> String {
+fn reason(error: &image::ImageError, floats: &[ImageFormat]) -> String {
     use image::ImageError;
     use image::error::{LimitErrorKind, UnsupportedErrorKind};
     match error {
@@ -287,10 +290,17 @@ fn reason(error: &image::ImageError) -> String {
             format!("the picture takes more than {} GB of memory", MOST_MEMORY >> 30)
         }
         ImageError::Unsupported(it) if matches!(it.kind(), UnsupportedErrorKind::Format(_)) => {
-            unknown()
+            unknown(floats)
         }
         ImageError::Unsupported(_) => {
             "this kind of the picture's format cannot be read; save it as PNG".to_owned()
+        }
+        ImageError::Decoding(it) if it.format_hint() == ImageFormat::Hdr.into() => {
+            "it is damaged, or of a kind of Radiance HDR that cannot be read (only -Y H +X W, RGB)"
+                .to_owned()
+        }
+        ImageError::Decoding(it) if it.format_hint() == ImageFormat::OpenExr.into() => {
+            "it is damaged, or has no channels R, G and B outside of layers".to_owned()
         }
         _ => "the picture is damaged".to_owned(),
     }

@@ -160,6 +160,9 @@ const LEAST_SHARE: f64 = 0.05;
 /// Integrals and samples use the first level with at most this many columns: 1.4 degrees each.
 const GUIDE: usize = 256;
 
+/// Integrals use at least this number of columns and rows.
+const FINE: usize = 64;
+
 impl PanoramaLight {
     fn new(texels: &Texels, convert: fn(f64) -> f64) -> Self {
         #[expect(clippy::cast_possible_truncation, reason = "light is kept in f32")]
@@ -174,13 +177,16 @@ impl PanoramaLight {
         let mut it = Self { levels, moments: [Moments::ZERO; 3], shares: Vec::new() };
         let guide = it.guide();
         let mut moments = [Moments::ZERO; 3];
+        // Large texels are divided: their light comes from more than one direction.
+        let parts = [guide.size.width, guide.size.height].map(|side| FINE.div_ceil(side));
         for (place, texel) in guide.light.iter().enumerate() {
-            let (d, angle) = (guide.direction(place), guide.solid_angle(place));
-            for (moments, light) in moments.iter_mut().zip(texel) {
-                let part = f64::from(*light) * angle;
-                moments.all += part;
-                moments.along += d * part;
-                moments.square += DMat3::from_cols(d * d.x, d * d.y, d * d.z) * part;
+            for (d, angle) in guide.directions(place, parts) {
+                for (moments, light) in moments.iter_mut().zip(texel) {
+                    let part = f64::from(*light) * angle;
+                    moments.all += part;
+                    moments.along += d * part;
+                    moments.square += DMat3::from_cols(d * d.x, d * d.y, d * d.z) * part;
+                }
             }
         }
         let all = luminance(moments.each_ref().map(|channel| channel.all));
@@ -307,6 +313,20 @@ impl Texels {
         let y = upper + (lower - upper) * down;
         let flat = (1.0 - y * y).max(0.0).sqrt();
         DVec3::new(flat * sin, y, -flat * cos)
+    }
+
+    /// Returns the directions of the parts of a texel, with the solid angle of each.
+    #[expect(clippy::cast_precision_loss, reason = "few parts")]
+    fn directions(
+        &self,
+        place: usize,
+        [across, down]: [usize; 2],
+    ) -> impl Iterator<Item = (DVec3, f64)> {
+        let angle = self.solid_angle(place) / (across * down) as f64;
+        (0..across * down).map(move |part| {
+            let [x, y] = [part % across, part / across].map(|at| at as f64 + 0.5);
+            (self.direction_within(place, [x / across as f64, y / down as f64]), angle)
+        })
     }
 
     /// Returns the column and row of a direction, with fractions.
@@ -467,6 +487,21 @@ mod tests {
                 let got = lamp.light(true).moments()[0].all;
                 assert!((got / own - 1.0).abs() < 1e-5, "{width} x {height}, {place}: {got} {own}");
             }
+        }
+    }
+
+    #[test]
+    fn an_even_picture_shines_evenly_whatever_its_size() {
+        for (width, height) in [(1, 1), (1, 9), (2, 1), (5, 3), (8, 4), (200, 1), (256, 128)] {
+            let even = painted(Size::new(width, height), |_| 0.5);
+            let Moments { all, along, square } = &even.light(true).moments()[0];
+            let sphere = 2.0 * PI;
+            assert!((all - sphere).abs() < 1e-9, "{width} x {height}: {all}");
+            assert!(along.length() < 1e-9, "{width} x {height}: {along}");
+            let error = *square - DMat3::IDENTITY * (sphere / 3.0);
+            let most =
+                error.to_cols_array().into_iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+            assert!(most < 2e-3, "{width} x {height}: {square}");
         }
     }
 
