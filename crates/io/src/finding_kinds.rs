@@ -242,6 +242,9 @@ kinds! {
     Transparent [Joined, Loss]:
         "material \"@\" is wholly transparent and draws nothing",
         "# materials are wholly transparent and draw nothing";
+    HaloEven [Joined]:
+        "a statement \"@\" -halo fades towards the edges; it is drawn evenly",
+        "# statements \"@\" -halo fade towards the edges; they are drawn evenly";
     MapOpaque [Joined]:
         "material \"@\": map_d names the picture of map_Kd, which has no alpha: it is opaque",
         "# materials: map_d names the picture of map_Kd, which has no alpha: they are opaque";

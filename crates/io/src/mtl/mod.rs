@@ -32,7 +32,7 @@ use marraztu_core::base::Shared;
 use marraztu_core::base::image::Picture;
 use marraztu_core::scene::{
     BumpMaps, FileMaterial, MapKind, NONE, Panorama, Reflection, SurfaceMap, SurfaceMaps, Texture,
-    UndrawnMap, Wrap,
+    Transmission, UndrawnMap, Wrap,
 };
 
 /// The most texels of all textures of a model: 2 GB.
@@ -155,13 +155,16 @@ impl<'a> Library<'a> {
     /// Some programs write `Tr 1` or `d 0` for opaque materials. Both are ignored if they would
     /// hide every used material.
     pub(super) fn finish(mut self, used: &BTreeSet<u32>) -> (Vec<FileMaterial>, Vec<Finding>) {
+        // Glass is seen all the same.
+        let is_clear = |it: &FileMaterial| it.material.optics.transmission == Transmission::Opacity;
         let is_hidden = |place: &u32| {
             let place = *place as usize;
-            self.materials[place].opacity == 0.0 && !self.origins[place].is_own
+            let material = &self.materials[place];
+            material.opacity == 0.0 && !is_clear(material) && !self.origins[place].is_own
         };
         let hides_all = !used.is_empty() && used.iter().all(is_hidden);
         for (material, origin) in self.materials.iter_mut().zip(&self.origins) {
-            if material.opacity != 0.0 {
+            if material.opacity != 0.0 || is_clear(material) {
                 continue;
             }
             let kind = if hides_all && !origin.is_own {

@@ -19,6 +19,8 @@ pub(super) struct Statements {
     pub(super) is_own: bool,
     /// Whether Blender has written the file.
     pub(super) is_of_blender: bool,
+    /// Whether MeshLab has written the file: Tr is then the opacity.
+    pub(super) is_of_meshlab: bool,
     pub(super) ambient: Option<[f64; 3]>,
     pub(super) diffuse: Option<[f64; 3]>,
     pub(super) specular: Option<[f64; 3]>,
@@ -41,11 +43,16 @@ pub(super) struct Statements {
     pub(super) undrawn_maps: Vec<(String, Map)>,
 }
 
+/// The first bytes of a file, which name its program.
+const HEAD: usize = 200;
+
 /// Reads the statements of the materials of a file.
 pub(super) fn read_statements(bytes: &[u8], findings: &mut Findings) -> Vec<Statements> {
     let mut list: Vec<Statements> = Vec::new();
     let is_own = is_signed(bytes);
     let is_of_blender = bytes.starts_with(b"# Blender");
+    let head = &bytes[..bytes.len().min(HEAD)];
+    let is_of_meshlab = head.windows(7).any(|word| word == b"Meshlab");
     for line in Lines::new(bytes) {
         let (keyword, _) = line.statement();
         if line.oddity == Some(Oddity::NotContinued) {
@@ -54,6 +61,7 @@ pub(super) fn read_statements(bytes: &[u8], findings: &mut Findings) -> Vec<Stat
         if keyword == b"newmtl" {
             let (name, line) = (line.name(), line.number);
             let own = Statements { name, line, is_own, is_of_blender, ..Statements::default() };
+            let own = Statements { is_of_meshlab, ..own };
             list.push(own);
             continue;
         }
@@ -82,8 +90,15 @@ impl Statements {
             b"ke" => is_read = set(&mut self.emission, statement::color(rest)),
             b"ns" => is_read = set(&mut self.exponent, statement::scalar(rest)),
             b"d" => {
-                // `d -halo x` fades towards the centre; only x is used.
-                let rest = rest.strip_prefix(b"-halo").unwrap_or(rest);
+                // `d -halo x` fades towards the edges; only x is used.
+                let halo = rest.strip_prefix(b"-halo");
+                if halo.is_some() {
+                    note(FindingKind::HaloEven);
+                }
+                let rest = halo.unwrap_or(rest);
+                is_read = set(&mut self.opacity, statement::scalar(rest));
+            }
+            b"tr" if self.is_of_meshlab => {
                 is_read = set(&mut self.opacity, statement::scalar(rest));
             }
             b"tr" => is_read = set(&mut self.transparency, statement::scalar(rest)),
@@ -119,7 +134,7 @@ impl Statements {
                 note(FindingKind::MapUnused);
                 self.undrawn_maps.extend(map(rest).map(|map| (decode(keyword), map)));
             }
-            _ if self.keep_undrawn(keyword, rest) => {}
+            _ if let Some(is_known) = self.keep_undrawn(keyword, rest) => is_read = is_known,
             _ => note(FindingKind::Unknown),
         }
         if !is_read {

@@ -12,15 +12,16 @@ const KEYWORDS: [&str; 11] =
 const MODELS: std::ops::RangeInclusive<f64> = 3.0..=10.0;
 
 impl Statements {
-    /// Keeps the numbers of a statement; returns whether its keyword is one of [`KEYWORDS`].
-    pub(super) fn keep_undrawn(&mut self, keyword: &[u8], rest: &[u8]) -> bool {
+    /// Keeps the numbers of a statement. Returns whether it has any; `None` if its keyword is none
+    /// of [`KEYWORDS`].
+    pub(super) fn keep_undrawn(&mut self, keyword: &[u8], rest: &[u8]) -> Option<bool> {
         let is_same = |known: &&&str| known.as_bytes().eq_ignore_ascii_case(keyword);
-        let Some(known) = KEYWORDS.iter().find(is_same) else { return false };
+        let known = KEYWORDS.iter().find(is_same)?;
         // `Tf` may name a spectrum file, which would be missing in other folders.
-        if let Some(numbers) = statement::numbers(rest) {
-            self.undrawn.insert(*known, numbers);
-        }
-        true
+        let numbers = statement::numbers(rest);
+        let is_read = numbers.is_some();
+        self.undrawn.extend(numbers.map(|numbers| (*known, numbers)));
+        Some(is_read)
     }
 
     /// Keeps the number of an illumination model that asks for more than model 2.

@@ -182,13 +182,17 @@ impl Piece {
     /// Parses `s group`, `s on` and `s off`.
     fn smoothing(&mut self, rest: &[u8], line: u32) {
         let text = rest.split(|b| *b == b'#').next().unwrap_or_default().trim_ascii();
-        let number = || std::str::from_utf8(text).ok()?.parse().ok();
+        // Groups are numbers, or sets of 32 bits, which some programs write with a sign.
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "32 bits")]
+        let bits = |number: i64| (number as u32).min(INHERITED - 1);
+        let is_in_range = |number: &i64| (i32::MIN.into()..=u32::MAX.into()).contains(number);
+        let number = || std::str::from_utf8(text).ok()?.parse().ok().filter(is_in_range);
         let group = match &text.to_ascii_lowercase()[..] {
             b"off" => Some(0),
             b"on" => Some(1),
-            _ => number(),
+            _ => number().map(bits),
         };
-        self.smoothing = group.filter(|group| *group != INHERITED).unwrap_or_else(|| {
+        self.smoothing = group.unwrap_or_else(|| {
             self.findings.add(FindingKind::SmoothingUnreadable, &excerpt(text), Some(line));
             0
         });
