@@ -270,11 +270,15 @@ fn bop_entries(image: &DatasetImage, gap: &mut dyn FnMut(&DatasetObject) -> Stri
     #[expect(clippy::cast_precision_loss, reason = "fewer than 2^53 pixels")]
     let info = |object: &DatasetObject| {
         let DatasetObject { visible, alone, whole, .. } = object;
-        // An invisible object has no box: calc_gt_info.py of bop_toolkit.
-        let bounds = if visible.count > 0 { whole.bounds } else { visible.bounds };
+        // An invisible object has no box, and boxes end in the middle of their last pixels:
+        // calc_gt_info.py and calc_2d_bbox of bop_toolkit.
+        let box_of = |[x, y, width, height]: [i64; 4]| match visible.count {
+            0 => [-1; 4],
+            _ => [x, y, width - 1, height - 1],
+        };
         json!({
-            "bbox_obj": bounds,
-            "bbox_visib": visible.bounds,
+            "bbox_obj": box_of(whole.bounds),
+            "bbox_visib": box_of(visible.bounds),
             "px_count_all": whole.count,
             "px_count_valid": alone,
             "px_count_visib": visible.count,
