@@ -30,7 +30,7 @@ impl Thoroughness {
     /// About 25 seconds for the first scene on two cores.
     pub const QUICK: Self = Self {
         word: "quick",
-        limits: Limits { pairs: 11, least: 7, time: Duration::from_millis(300) },
+        limits: Limits { pairs: 12, least: 8, time: Duration::from_millis(300) },
         combinations: 12,
         time: Duration::from_secs(20),
         presets: true,
@@ -38,7 +38,7 @@ impl Thoroughness {
     /// One axis in a second or two: only its choices.
     pub const AXIS: Self = Self {
         word: "axis",
-        limits: Limits { pairs: 15, least: 5, time: Duration::from_millis(250) },
+        limits: Limits { pairs: 16, least: 6, time: Duration::from_millis(250) },
         combinations: 0,
         time: Duration::from_secs(10),
         presets: false,
@@ -46,7 +46,7 @@ impl Thoroughness {
     /// At most 4 minutes for the first scene on two cores.
     pub const WHOLE: Self = Self {
         word: "whole",
-        limits: Limits { pairs: 31, least: 7, time: Duration::from_secs(3) },
+        limits: Limits { pairs: 32, least: 8, time: Duration::from_secs(3) },
         combinations: 48,
         time: Duration::from_secs(200),
         presets: true,
