@@ -11,7 +11,7 @@
 //! Hyperparameter Optimization", AISTATS 2016.
 
 mod meter;
-mod model;
+pub(crate) mod model;
 
 use std::cmp::Ordering;
 use std::time::Duration;
@@ -121,14 +121,15 @@ pub fn search(
 }
 
 /// An axis whose choices are searched.
-struct FreeAxis {
+#[derive(Debug)]
+pub(crate) struct FreeAxis {
     axis: &'static Axis,
-    choices: Vec<&'static Choice>,
+    pub(crate) choices: Vec<&'static Choice>,
 }
 
 /// Returns the axes that have a distinct effect in the scene, with the choices worth trying. Models
 /// and choices for teaching are left out; the ideal has the most samples and is added at the end.
-fn free_axes(shot: &Shot, fixed: &[&'static Axis]) -> Vec<FreeAxis> {
+pub(crate) fn free_axes(shot: &Shot, fixed: &[&'static Axis]) -> Vec<FreeAxis> {
     let (scene, view) = (&shot.scene, &shot.view);
     let is_free = |axis: &&Axis| {
         axis.kind == AxisKind::Scored
@@ -456,7 +457,7 @@ fn compare(a: &[f64], b: &[f64]) -> Ordering {
 }
 
 /// Returns whether each choice that differs from `base` has an effect with the other ones.
-fn is_sound(settings: &Settings, base: &Settings) -> bool {
+pub(crate) fn is_sound(settings: &Settings, base: &Settings) -> bool {
     AXES.iter().all(|axis| {
         let choice = axis.chosen(settings);
         choice.is(base) || (choice.among)(settings).is_ok()

@@ -12,6 +12,7 @@
 //! The work is divided into short steps, so an idle editor can measure and stop at any time.
 
 mod drawn;
+mod line;
 
 use std::time::{Duration, Instant};
 
@@ -20,6 +21,7 @@ use serde::{Deserialize, Serialize};
 use super::estimate::Estimate;
 use super::strata::Strata;
 use drawn::Drawn;
+pub use line::Line;
 use marraztu_core::accuracy::{AccuracyPreset, LightSamples, Samples, Settings, Shot};
 use marraztu_core::base::image::{Picture, Size};
 use marraztu_render::screen::coverage::PixelBox;

@@ -3,7 +3,9 @@
 //! Each row is a preset with the time and the error of its picture; a further row has the user's
 //! own settings, if there are any. The editor measures them while nothing happens; until then, the
 //! figures are grey. Bars show how times rise, in powers of ten, and errors fall. A click draws
-//! with the settings of a row. Over a low picture, the dial is one row, which unfolds the others.
+//! with the settings of a row. Below them is a line from quick to exact, on which one drags: all
+//! settings that no other ones beat in this view. Over a low picture, the dial is one row, which
+//! unfolds the others.
 
 use std::time::Duration;
 
@@ -33,6 +35,10 @@ const COLUMNS: [f32; 3] = [134.0, 200.0, WIDTH - 6.0];
 /// The length of the longest bar, and the powers of ten of the bar of the shortest time.
 const BAR: f32 = 46.0;
 const SHORTEST: f64 = 0.5;
+
+/// The height of the line from quick to exact, and the radius of its points.
+const LINE: f32 = 66.0;
+const POINT: f32 = 3.5;
 
 /// The dial is hidden over a smaller picture.
 const LEAST: egui::Vec2 = vec2(400.0, 100.0);
@@ -132,6 +138,68 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Requests) {
     let said = said.unwrap_or_else(|| waits_for.to_owned());
     ui.add_space(2.0);
     ui.add(egui::Label::new(RichText::new(said).small()).wrap());
+    line_ui(ui, state, requests);
+}
+
+/// Shows the line from quick to exact: to the right, the time in powers of ten; upwards, the error,
+/// its root, so that small ones do not look alike. The point next to the pointer is chosen.
+fn line_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
+    let line = state.dial.line();
+    let Some((first, last)) = line.first().zip(line.last()).filter(|_| line.len() > 1) else {
+        return;
+    };
+    ui.add_space(4.0);
+    let (rect, _) = ui.allocate_exact_size(vec2(WIDTH, LINE), Sense::hover());
+    let plot = rect.shrink2(vec2(POINT + 3.0, POINT + 1.0)).with_max_y(rect.bottom() - 16.0);
+    let [quick, slow] = [first, last].map(|(_, figures)| libm::log10(figures.ms.value));
+    let largest = first.1.error.map_or(1.0, |error| error.value);
+    #[expect(clippy::cast_possible_truncation, reason = "for the eye")]
+    let place = |(_, figures): &(Settings, Figures)| {
+        let across = (libm::log10(figures.ms.value) - quick) / (slow - quick);
+        let error = figures.error.map_or(0.0, |error| error.value);
+        let up = (error / largest).sqrt();
+        plot.lerp_inside(vec2(across.clamp(0.0, 1.0) as f32, 1.0 - up.clamp(0.0, 1.0) as f32))
+    };
+    let places: Vec<egui::Pos2> = line.iter().map(place).collect();
+    let (weak, accent) = (ui.visuals().weak_text_color(), theme::accent(ui.visuals()));
+    let whole = ui.interact(rect, ui.scope_id().with("line"), Sense::drag());
+    let painter = ui.painter();
+    painter.hline(plot.x_range(), plot.bottom(), (1.0, weak.gamma_multiply(0.5)));
+    painter.line(places.clone(), (1.5, accent.gamma_multiply(0.8)));
+    let below = rect.with_min_y(plot.bottom() + POINT);
+    for (text, align) in [("quick", Align2::LEFT_TOP), ("exact", Align2::RIGHT_TOP)] {
+        let at = align.pos_in_rect(&below.shrink2(vec2(4.0, 0.0)));
+        painter.text(at, align, text, TextStyle::Small.resolve(ui.style()), weak);
+    }
+    let now = state.dial.of(&state.settings).map(|figures| figures.settings);
+    let on = line.iter().position(|(_, figures)| Some(figures.settings) == now);
+    let mut chosen = None;
+    let ids: Vec<Id> = (0..line.len()).map(|i| ui.scope_id().with(("point", i))).collect();
+    let stop = regions::stop(ui, &ids, on, line.len());
+    for (i, (at, (settings, figures))) in places.iter().zip(&line).enumerate() {
+        let is_on = on == Some(i);
+        let square = Rect::from_center_size(*at, vec2(2.0 * POINT + 4.0, 2.0 * POINT + 4.0));
+        let point = ui.interact(square, ids[i], regions::sense(Sense::click(), i == stop));
+        let error = figures.error.and_then(|error| error_in_words(&error)).unwrap_or_default();
+        let at_rest = state.dial.at_rest(settings, state);
+        let name = format!("{}, error {error}: {}", milliseconds(&figures.ms), at_rest.in_words());
+        point.widget_info(|| WidgetInfo::selected(Role::RadioButton, true, is_on, &name));
+        let radius = if is_on || point.hovered() { POINT + 1.5 } else { POINT - 0.5 };
+        let fill = if is_on { accent } else { ui.visuals().window_fill };
+        ui.painter().circle(*at, radius, fill, (1.5, accent));
+        focus_ring(ui, square, &point);
+        if point.on_hover_text(name).clicked() {
+            chosen = Some(i);
+        }
+    }
+    let pointer = whole.interact_pointer_pos().filter(|_| whole.dragged());
+    if let Some(pointer) = pointer {
+        let far = |i: &usize| egui::emath::OrderedFloat((places[*i].x - pointer.x).abs());
+        chosen = (0..places.len()).min_by_key(far);
+    }
+    if let Some(i) = chosen.filter(|i| on != Some(*i)) {
+        requests.push(Request::Settings(line[i].0));
+    }
 }
 
 /// Shows the heads of the columns, and the button of the loupe.

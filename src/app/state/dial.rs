@@ -2,7 +2,7 @@
 
 use super::State;
 use crate::app::drawing::dial::{DialFigures, DialWish, Dialled};
-use marraztu_core::accuracy::{AccuracyPreset, Settings};
+use marraztu_core::accuracy::{AccuracyPreset, Samples, Settings};
 use marraztu_core::base::image::Size;
 use marraztu_lab::dial::Figures;
 
@@ -22,16 +22,27 @@ pub struct DialState {
 }
 
 impl DialState {
-    /// Returns the last figures.
+    /// Returns the last figures of the presets.
     pub fn figures(&self) -> &[Figures] {
-        self.last.as_ref().map_or(&[], |last| &last.figures)
+        self.last.as_ref().map_or(&[], |last| &last.measured.rows)
     }
 
     /// Returns the last figures of settings. Choices of models do not matter.
     pub(crate) fn of(&self, settings: &Settings) -> Option<Figures> {
         let last = self.last.as_ref()?;
-        let settings = last.of.at_rest(&settings.modelled_as(&last.of.shot.settings));
-        last.figures.iter().find(|figures| figures.settings == settings).copied()
+        last.measured.of(&last.of.at_rest(settings))
+    }
+
+    /// Returns the line from quick to exact: settings to draw with, and their figures. Samples
+    /// that every picture at rest has are left to the refinement.
+    pub(crate) fn line(&self) -> Vec<(Settings, Figures)> {
+        let Some(last) = self.last.as_ref().filter(|_| self.current) else { return Vec::new() };
+        let chosen = |figures: &Figures| {
+            let fewer = Settings { samples: Samples::One, ..figures.settings };
+            let is_refined = last.of.at_rest(&fewer) == figures.settings;
+            (if is_refined { fewer } else { figures.settings }, *figures)
+        };
+        last.measured.line.iter().map(chosen).collect()
     }
 
     /// Returns settings as the window shows them at rest.

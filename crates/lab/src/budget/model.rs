@@ -11,19 +11,19 @@ const MOST: usize = 128;
 
 /// A choice that differs from the base in one axis.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Step {
-    pub(super) choice: &'static Choice,
+pub(crate) struct Step {
+    pub(crate) choice: &'static Choice,
     /// The ratio of its time to that of the base.
-    pub(super) time: f64,
+    pub(crate) time: f64,
     /// What it adds to the error of the base.
-    pub(super) error: f64,
+    pub(crate) error: f64,
 }
 
 /// Settings with their predicted time and error.
-pub(super) type Prediction = (Settings, [f64; 2]);
+pub(crate) type Prediction = (Settings, [f64; 2]);
 
 /// Returns the front of all combinations of steps, at most one for each axis.
-pub(super) fn predictions(base: Prediction, axes: &[Vec<Step>]) -> Vec<Prediction> {
+pub(crate) fn predictions(base: Prediction, axes: &[Vec<Step>]) -> Vec<Prediction> {
     let mut all = vec![base];
     for steps in axes {
         let grown = all.iter().flat_map(|(settings, [time, error])| {

@@ -92,8 +92,8 @@ impl<P> Elsewhere<P> {
         if !is_stale {
             desk.news.refined = refined.or(desk.news.refined.take());
             desk.news.ideal = ideal.or(desk.news.ideal.take());
-            if let (Some(figures), Some(of)) = (dial, self.drawn.as_ref().and_then(dialled)) {
-                desk.news.dial = Some(Box::new(DialFigures { of, figures }));
+            if let (Some(measured), Some(of)) = (dial, self.drawn.as_ref().and_then(dialled)) {
+                desk.news.dial = Some(Box::new(DialFigures { of, measured }));
             }
         }
         desk.news.border = border.or(desk.news.border.take());

@@ -7,12 +7,12 @@
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 use crate::app::drawing::border::Border;
+use crate::app::drawing::dial::Measured;
 use crate::app::drawing::snapshot::DrawOptions;
 use crate::app::drawing::viewport_renderer::Drawn;
 use marraztu_core::base::image::Size;
 use marraztu_core::scene::ItemId;
 use marraztu_lab::cost::Explained;
-use marraztu_lab::dial::Figures;
 use marraztu_render::Hit;
 use marraztu_render::screen::coverage::PixelBox;
 
@@ -44,7 +44,7 @@ pub(super) struct Reply {
     pub(super) refined: Option<Drawn>,
     pub(super) outline: Option<[Option<Border>; 2]>,
     pub(super) explained: Option<Explained>,
-    pub(super) dial: Option<Vec<Figures>>,
+    pub(super) dial: Option<Measured>,
     pub(super) ideal: Option<(PixelBox, Size)>,
     pub(super) picked: Vec<Option<Hit>>,
     pub(super) failed: bool,

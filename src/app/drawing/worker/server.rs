@@ -96,7 +96,7 @@ impl DrawingServer {
                 refined: refined.clone(),
                 outline,
                 explained: explained.as_deref().cloned(),
-                dial: dial.map(|dial| dial.figures),
+                dial: dial.map(|dial| dial.measured),
                 ideal: ideal.as_ref().map(|(window, picture)| (*window, picture.size())),
                 picked: picked.into_iter().map(|(_, hit)| hit).collect(),
                 failed: failed || news.failed,
