@@ -15,6 +15,7 @@ use super::hits::PACK;
 use super::queue::{Pack, SMALL};
 use super::rule::Rule;
 use super::small;
+use super::tile_queues::packed;
 use super::vertices::{fetch, fetch_corners};
 use crate::accel::{DrawOrder, DrawTriangle};
 use crate::frame::FramePlan;
@@ -239,7 +240,7 @@ impl<'a> Setup<'a> {
         let side = (right - left).max(bottom - top);
         // With several samples, triangles of more than a few pixels wait for their tiles.
         let in_tiles = N > 1 && R::IN_TILES;
-        let tiles = bins.tile_queues.boxes(boxes);
+        let (tiles, in_tile) = (bins.tile_queues.boxes(boxes), packed(pack));
         let mut above = 0;
         let queues = if self.has_small::<R>() { R::QUEUES } else { 0 };
         // The queues in ascending size; a full queue is drawn immediately.
@@ -252,7 +253,7 @@ impl<'a> Setup<'a> {
             }
             bins.drawn += count;
             if in_tiles && queue >= bins.tile_queues.first_size {
-                bins.tile_queues.add(queue, (pack, &tiles), some);
+                bins.tile_queues.add(queue, (&in_tile, &tiles), some);
                 continue;
             }
             if bins.queues[queue].add(pack, some, count) {

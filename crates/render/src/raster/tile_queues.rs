@@ -3,14 +3,18 @@
 //! With several samples per pixel, hits take more memory than the triangles themselves. A triangle
 //! of ten pixels has about forty hits of twelve bytes, which would be written during setup and read
 //! from a distant cache when tiles are drawn. Triangles of more than a few pixels are therefore
-//! binned by tile instead, and rasterised when their tile is drawn.
+//! binned by tile instead, and rasterised when their tile is drawn. Near their tile, 16 bits tell
+//! a coordinate, which matters because a million triangles do not fit in a near cache.
 
 use fearless_simd::{Select as _, Simd, SimdBase as _, SimdMask as _, i32x16, mask32x16};
+use prefetch_index::prefetch_index;
 
 use super::hits::PACK;
-use super::queue::{Pack, ROWS, SMALL};
-use crate::screen::coverage::PixelBox;
+use super::queue::{Pack, SMALL};
+use crate::screen::coverage::{PixelBox, SUBPIXELS};
+use crate::screen::tiles::TILE;
 use crate::simd::Bits;
+use marraztu_core::base::math::each;
 
 /// The number of sizes of bounding boxes.
 pub(super) const SIZES: usize = SMALL.len();
@@ -35,6 +39,12 @@ const FULL: u32 = 0;
 /// The largest number of tiles for which sixteen triangles are added tile by tile.
 const FEW_TILES: i64 = 6;
 
+/// The numbers stored per triangle: its corners, their depths, the triangle's number.
+const ROWS: usize = 7;
+
+/// Sixteen triangles, row by row. See [`packed`].
+pub(super) type Packed<S> = [i32x16<S>; ROWS];
+
 /// A page of triangles of one tile and size, with room for sixteen more.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
@@ -48,6 +58,12 @@ struct Page {
 impl Page {
     const fn new(count: usize) -> Self {
         Self { rows: [[0; PAGE + PACK]; ROWS], count, previous: FULL }
+    }
+
+    /// Prefetches sixteen triangles.
+    #[inline(always)]
+    fn prefetch(&self, at: usize) {
+        self.rows.iter().for_each(|row| prefetch_index(row.as_slice(), at));
     }
 }
 
@@ -63,14 +79,15 @@ pub(crate) struct TileQueues {
     tiles: [i32; 2],
     /// The last page of each tile and size.
     last: Vec<[u32; SIZES]>,
-    pages: Vec<Page>,
+    #[expect(clippy::vec_box, reason = "a list that grows would copy hundreds of megabytes")]
+    pages: Vec<Box<Page>>,
     /// The number of pages in use.
     handed_out: usize,
 }
 
 impl Default for TileQueues {
     fn default() -> Self {
-        let pages = vec![Page::new(PAGE)];
+        let pages = vec![Box::new(Page::new(PAGE))];
         Self { first_size: SIZES, tiles: [0; 2], last: Vec::new(), pages, handed_out: 1 }
     }
 }
@@ -111,7 +128,7 @@ impl TileQueues {
     pub(crate) fn add<S: Simd>(
         &mut self,
         size: usize,
-        (pack, boxes): (&Pack<S>, &TileBoxes<S>),
+        (pack, boxes): (&Packed<S>, &TileBoxes<S>),
         some: mask32x16<S>,
     ) {
         let all = self.reach(boxes, some);
@@ -161,7 +178,7 @@ impl TileQueues {
     fn add_one_by_one<S: Simd>(
         &mut self,
         size: usize,
-        (pack, boxes): (&Pack<S>, &TileBoxes<S>),
+        (pack, boxes): (&Packed<S>, &TileBoxes<S>),
         some: u64,
     ) {
         let pack = pack.map(<[i32; PACK]>::from);
@@ -181,7 +198,7 @@ impl TileQueues {
     }
 
     #[inline(always)]
-    fn add_to<S: Simd>(&mut self, tile: usize, size: usize, pack: &Pack<S>, some: mask32x16<S>) {
+    fn add_to<S: Simd>(&mut self, tile: usize, size: usize, pack: &Packed<S>, some: mask32x16<S>) {
         let page = self.page(tile, size);
         let at = page.count;
         // A compressing store writes sixteen numbers; a page has room for its overflow.
@@ -189,6 +206,13 @@ impl TileQueues {
             values.compress(some).store_slice(&mut row[at..at + PACK]);
         }
         page.count = at + some.to_bitmask().count_ones() as usize;
+    }
+
+    /// Returns the first pixel of a tile, in subpixels.
+    #[inline(always)]
+    fn corner(&self, tile: usize) -> [i32; 2] {
+        let (tile, columns) = (i32::try_from(tile).unwrap_or(0), self.tiles[0].max(1));
+        [tile % columns, tile / columns].map(|at| at * TILE * SUBPIXELS)
     }
 
     /// Returns a page of a tile and size with room for sixteen triangles.
@@ -207,7 +231,7 @@ impl TileQueues {
     fn turn(&mut self, tile: usize, size: usize) -> &mut Page {
         // Pages of earlier frames are reused first.
         if self.handed_out == self.pages.len() {
-            self.pages.push(Page::new(0));
+            self.pages.push(Box::new(Page::new(0)));
         }
         let new = self.handed_out;
         let previous = self.last[tile][size];
@@ -235,18 +259,48 @@ impl TileQueues {
         mut take: impl FnMut(&Pack<S>, usize),
     ) {
         let mut page = self.last.get(tile).map_or(FULL, |last| last[size]);
+        let corner = self.corner(tile);
         while page != FULL {
-            let Page { rows, count, previous } = &self.pages[page as usize];
+            let Page { rows, count, previous } = &*self.pages[page as usize];
+            let next = &self.pages[*previous as usize];
             for at in (0..*count).step_by(PACK) {
-                let mut pack = [i32x16::splat(simd, 0); ROWS];
-                for (values, row) in pack.iter_mut().zip(rows) {
+                let mut packed = [i32x16::splat(simd, 0); ROWS];
+                for (values, row) in packed.iter_mut().zip(rows) {
                     *values = i32x16::from_slice(simd, &row[at..at + PACK]);
                 }
-                take(&pack, (count - at).min(PACK));
+                // Fetched while these are drawn.
+                next.prefetch(at);
+                take(&unpacked(packed, corner), (count - at).min(PACK));
             }
             page = *previous;
         }
     }
+}
+
+/// Packs triangles: a corner is the lower half of x, and that of y above it.
+#[inline(always)]
+pub(super) fn packed<S: Simd>(pack: &Pack<S>) -> Packed<S> {
+    let [x0, y0, x1, y1, x2, y2, d0, d1, d2, number] = *pack;
+    let [a, b, c] = each(
+        [[x0, y0], [x1, y1], [x2, y2]],
+        #[inline(always)]
+        |[x, y]| (x & 0xffff) | (y << 16),
+    );
+    [a, b, c, d0, d1, d2, number]
+}
+
+/// Unpacks triangles of the tile with this first pixel, in subpixels. No corner is more than a box
+/// away from the tile, so the lower half tells the distance.
+#[inline(always)]
+fn unpacked<S: Simd>(rows: Packed<S>, [left, top]: [i32; 2]) -> Pack<S> {
+    let [a, b, c, d0, d1, d2, number] = rows;
+    // The arithmetic shifts restore the sign of the distance.
+    let [[x0, y0], [x1, y1], [x2, y2]] = each(
+        [a, b, c],
+        #[inline(always)]
+        |corner| [(((corner - left) << 16) >> 16) + left, ((corner - (top << 16)) >> 16) + top],
+    );
+    [x0, y0, x1, y1, x2, y2, d0, d1, d2, number]
 }
 
 #[cfg(test)]
@@ -266,6 +320,7 @@ mod tests {
             let [columns, rows] = [1 + random(5), 1 + random(5)];
             queues.clear([columns, rows], 16);
             let mut want = vec![vec![Vec::new(); SIZES]; (columns * rows).cast_unsigned() as usize];
+            let mut all = Vec::new();
             for first in (0..400).step_by(PACK) {
                 // Close together, or spread over the picture and beyond.
                 let spread = if round % 2 == 0 { 40 } else { 64 * 6 };
@@ -292,15 +347,23 @@ mod tests {
                         }
                     }
                 }
+                // Corners at the corners of the box, and depths that differ.
+                let lanes: [_; PACK] = std::array::from_fn(|lane| lane);
+                let rows = lanes.map(|lane| {
+                    let [left, top, right, bottom] = boxes.map(|row| row[lane] * SUBPIXELS);
+                    let number = first + i32::try_from(lane).unwrap();
+                    let depths = [number + 1000, number + 2000, number + 3000];
+                    [left, top, right, top, right, bottom, depths[0], depths[1], depths[2], number]
+                });
+                all.extend(rows);
                 dispatch!(Level::new(), simd => {
-                    let numbers: [i32; PACK] = std::array::from_fn(|lane| {
-                        first + i32::try_from(lane).unwrap()
+                    let pack: Pack<_> = std::array::from_fn(|row| {
+                        i32x16::from_slice(simd, &rows.map(|triangle| triangle[row]))
                     });
-                    let pack = [i32x16::from_slice(simd, &numbers); ROWS];
                     let boxes = boxes.map(|row| i32x16::from_slice(simd, &row));
                     let boxes = queues.boxes(boxes);
                     let some = mask32x16::from_bitmask(simd, some);
-                    queues.add(size, (&pack, &boxes), some);
+                    queues.add(size, (&packed(&pack), &boxes), some);
                 });
             }
             for (tile, sizes) in want.iter().enumerate() {
@@ -308,10 +371,13 @@ mod tests {
                 for (size, want) in sizes.iter().enumerate() {
                     let mut got = Vec::new();
                     dispatch!(Level::new(), simd => queues.each(simd, tile, size, |pack, count| {
-                        for row in pack {
-                            assert_eq!(<[i32; PACK]>::from(*row), <[i32; PACK]>::from(pack[0]));
+                        let pack = pack.map(<[i32; PACK]>::from);
+                        for lane in 0..count {
+                            let number = pack[9][lane];
+                            let added = all[number.cast_unsigned() as usize];
+                            assert_eq!(pack.map(|row| row[lane]), added);
+                            got.push(number);
                         }
-                        got.extend_from_slice(&<[i32; PACK]>::from(pack[0])[..count]);
                     }));
                     got.sort_unstable();
                     assert_eq!(got, *want, "{columns} x {rows}, tile {tile}");

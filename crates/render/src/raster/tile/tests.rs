@@ -9,6 +9,7 @@ use crate::raster::queue::{ROWS, SMALL};
 use crate::raster::rule::{Fine, Rule, Unsnapped, Usual};
 use crate::raster::scan_lines::ScanLines;
 use crate::raster::small;
+use crate::raster::tile_queues::packed;
 use crate::raster::visibility_buffer::{Visible, seen};
 use crate::screen::clip::ScreenVertex;
 use crate::screen::coverage::{Grid, Snapped, Triangle};
@@ -109,7 +110,7 @@ fn waiting(
         let pack = rows.map(|row| i32x16::from_slice(simd, &row));
         let boxes = bins.tile_queues.boxes(boxes.map(|row| i32x16::from_slice(simd, &row)));
         let some = mask32x16::from_bitmask(simd, (1 << triangles.len()) - 1);
-        bins.tile_queues.add(queue, (&pack, &boxes), some);
+        bins.tile_queues.add(queue, (&packed(&pack), &boxes), some);
     });
     bins
 }
