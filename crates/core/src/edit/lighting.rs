@@ -226,18 +226,28 @@ fn coefficients(object: &Object) -> impl Iterator<Item = [f64; 2]> {
 
 /// Returns the largest length of any sum of lights at a point of the sphere.
 fn most_diffuse(scene: &Scene, view: &View, centre: DVec3, radius: f64) -> f64 {
-    let lights: Vec<&Light> =
-        scene.lights.iter().map(|(_, light)| light).filter(|light| light.on).collect();
-    let at = |p: DVec3| {
-        let reaching: Vec<DVec3> =
-            lights.iter().filter_map(|light| light_at(light, scene, view, p)).collect();
+    let lights: Vec<(&Light, LightOrigin)> = scene
+        .lights
+        .iter()
+        .filter(|(_, light)| light.on)
+        .filter_map(|(_, light)| Some((light, scene.light_origin(view, &light.kind)?)))
+        .collect();
+    // Lists that all points share, since there are thousands.
+    let (mut reaching, mut sums) = (Vec::new(), Vec::new());
+    let mut at = |p: DVec3| {
+        reaching.clear();
+        reaching.extend(lights.iter().filter_map(|(light, origin)| light_at(light, origin, p)));
         // All subsets of the first lights are tried. For the others, the sum of lengths is a bound.
         let (few, others) = reaching.split_at(reaching.len().min(MOST_SUBSETS));
-        let sum_of = |set: usize| {
-            let of_set = few.iter().enumerate().filter(|(i, _)| set >> i & 1 == 1);
-            of_set.map(|(_, light)| *light).sum::<DVec3>().length()
-        };
-        let most = (0..1_usize << few.len()).map(sum_of).fold(0.0, f64::max);
+        sums.clear();
+        sums.push(DVec3::ZERO);
+        for light in few {
+            // The subsets with this light are those without it, and the light.
+            for set in 0..sums.len() {
+                sums.push(sums[set] + *light);
+            }
+        }
+        let most = sums.iter().map(|sum| sum.length_squared()).fold(0.0, f64::max).sqrt();
         most + others.iter().map(|light| light.length()).sum::<f64>()
     };
     // Sample a lattice through the sphere. The change between its points is within the margin to
@@ -257,8 +267,8 @@ fn most_diffuse(scene: &Scene, view: &View, centre: DVec3, radius: f64) -> f64 {
 
 /// Returns the light that arrives at `p`: the direction to the light times its strength. `None` for
 /// light without direction.
-fn light_at(light: &Light, scene: &Scene, view: &View, p: DVec3) -> Option<DVec3> {
-    let LightOrigin { position, direction } = scene.light_origin(view, &light.kind)?;
+fn light_at(light: &Light, origin: &LightOrigin, p: DVec3) -> Option<DVec3> {
+    let LightOrigin { position, direction } = *origin;
     // On its axis, a spot is as bright as a bulb.
     let Some(position) = position else {
         return direction.map(|direction| -direction * strength(light));

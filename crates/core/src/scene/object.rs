@@ -199,9 +199,15 @@ impl Object {
     /// farthest vertex. `None` without vertices.
     pub fn bounding_sphere(&self, time: f64) -> Option<(DVec3, f64)> {
         let middle = self.shown_bounds()?.centre();
-        let centre = self.world_from_mesh(time).transform_point3(middle);
-        let squares = self.placed_vertices(time).map(|p| p.distance_squared(centre));
-        Some((centre, squares.fold(0.0, f64::max).sqrt()))
+        let world_from_mesh = self.world_from_mesh(time);
+        let centre = world_from_mesh.transform_point3(middle);
+        let radius = || {
+            let squares = self.placed_vertices(time).map(|p| p.distance_squared(centre));
+            squares.fold(0.0, f64::max).sqrt()
+        };
+        let all = self.shows_all_parts();
+        let known = all.then(|| self.model.mesh.radius_of(world_from_mesh, radius));
+        Some((centre, known.unwrap_or_else(radius)))
     }
 
     /// Returns the largest side of the object's box along the object's axes, in world units. Steps

@@ -3,8 +3,9 @@
 //! A picture needs only part of this data. Computing and storing all of it would take longer than
 //! drawing.
 
-use std::sync::OnceLock;
+use std::sync::{Mutex, OnceLock, PoisonError};
 
+use glam::DMat4;
 use prefetch_index::prefetch_index;
 use rayon::prelude::*;
 
@@ -80,9 +81,21 @@ pub(crate) struct FoundOfShape {
     boundaries: OnceLock<Vec<u64>>,
     welded_boundaries: OnceLock<Vec<u64>>,
     pub(super) bvh: AnyAccelerator,
+    /// The last placement with a known radius.
+    radius: Mutex<Option<(DMat4, f64)>>,
 }
 
 impl Mesh {
+    /// Returns the radius of the placed mesh, which `compute` returns: the pictures of a model from
+    /// many sides place it in one way.
+    pub(crate) fn radius_of(&self, world_from_mesh: DMat4, compute: impl FnOnce() -> f64) -> f64 {
+        let mut known = self.shape.found.radius.lock().unwrap_or_else(PoisonError::into_inner);
+        match *known {
+            Some((placement, radius)) if placement == world_from_mesh => radius,
+            _ => known.insert((world_from_mesh, compute())).1,
+        }
+    }
+
     /// Returns the corners of all polygons, in the order of the polygons.
     pub fn corners(&self) -> &[Corner] {
         get_or_compute::<Vec<_>>(&self.found.corners, || {

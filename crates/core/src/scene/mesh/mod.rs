@@ -470,6 +470,16 @@ mod tests {
     }
 
     #[test]
+    fn a_radius_is_kept_for_the_last_placement() {
+        let mesh = Mesh::new(roof()).unwrap();
+        let [once, twice] = [1.0, 2.0].map(|scale| DMat4::from_scale(DVec3::splat(scale)));
+        assert_eq!(mesh.radius_of(once, || 1.0), 1.0);
+        assert_eq!(mesh.radius_of(once, || 3.0), 1.0, "not computed again");
+        assert_eq!(mesh.radius_of(twice, || 2.0), 2.0);
+        assert_eq!(mesh.radius_of(once, || 1.0), 1.0);
+    }
+
+    #[test]
     fn a_shared_side_is_one_edge_of_two_polygons() {
         let mesh = Mesh::new(roof()).unwrap();
         assert_eq!(mesh.edges().len(), 7);
