@@ -7,9 +7,7 @@ use serde::Serialize;
 
 use super::error::short_name;
 use super::findings::Finding;
-use marraztu_core::scene::{
-    FileMaterial, Mesh, Model, NONE, Shape, Smoothing, Stroke, Texture, Winding,
-};
+use marraztu_core::scene::{FileMaterial, Mesh, Model, Shape, Smoothing, Stroke, Texture, Winding};
 
 /// The shape, parts, materials and findings of a model. Serialized, it is the object that
 /// `docs/json.md` describes.
@@ -207,7 +205,7 @@ impl ModelFacts {
             offset: mesh.offset().to_array(),
             file_normals: mesh.has_file_normals(),
             smoothing: SmoothingFacts::of(mesh),
-            texture_coordinates: mesh.corners().iter().any(|corner| corner.uv != NONE),
+            texture_coordinates: polygons(mesh).any(|polygon| mesh.has_uvs(polygon)),
             vertex_colors: !mesh.colors().is_empty(),
             edges: EdgeFacts::of(mesh),
             edge_color: model.edge_color.map(|color| color.0),
@@ -224,17 +222,21 @@ pub fn with_slashes(path: &Path) -> String {
     if cfg!(windows) { text.replace('\\', "/") } else { text.into_owned() }
 }
 
+/// Returns the numbers of all polygons.
+fn polygons(mesh: &Mesh) -> std::ops::Range<u32> {
+    0..u32::try_from(mesh.polygon_count()).unwrap_or(u32::MAX)
+}
+
 impl FaceFacts {
     fn of(mesh: &Mesh) -> Self {
-        let polygons = 0..u32::try_from(mesh.polygon_count()).unwrap_or(u32::MAX);
-        let sizes: Vec<usize> = polygons.map(|i| mesh.polygon(i).len()).collect();
-        let of = |right: fn(usize) -> bool| sizes.iter().filter(|size| right(**size)).count();
+        let sizes = || polygons(mesh).map(|polygon| mesh.corners_of(polygon).len());
+        let of = |right: fn(&usize) -> bool| sizes().filter(right).count();
         Self {
-            all: sizes.len(),
-            triangles: of(|n| n == 3),
-            quads: of(|n| n == 4),
-            larger: of(|n| n > 4),
-            most_corners: sizes.iter().max().copied().unwrap_or(0),
+            all: mesh.polygon_count(),
+            triangles: of(|n| *n == 3),
+            quads: of(|n| *n == 4),
+            larger: of(|n| *n > 4),
+            most_corners: sizes().max().unwrap_or(0),
             drawn_triangles: mesh.triangle_count(),
         }
     }

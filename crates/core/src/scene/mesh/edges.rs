@@ -37,14 +37,18 @@ impl Edges {
         }
         sides.par_sort_unstable();
         sides.dedup();
-        let polygons = sides.iter().map(|(_, polygon)| *polygon).collect();
-        let mut edges: Vec<Edge> = Vec::new();
-        for (i, (ends, _)) in sides.iter().enumerate() {
-            match edges.last_mut() {
-                Some(last) if last.ends == *ends => last.count += 1,
-                _ => edges.push(Edge { ends: *ends, first: index(i), count: 1 }),
-            }
+        // Counted first: these lists are the largest of a mesh, and none is longer than it must be.
+        let by_edge = || sides.chunk_by(|(a, _), (b, _)| a == b);
+        let mut edges: Vec<Edge> = Vec::with_capacity(by_edge().count());
+        let mut first = 0;
+        for sides in by_edge() {
+            let count = index(sides.len());
+            edges.push(Edge { ends: sides[0].0, first, count });
+            first += count;
         }
+        // The polygons take the memory of the sides.
+        let mut polygons: Vec<u32> = sides.into_iter().map(|(_, polygon)| polygon).collect();
+        polygons.shrink_to_fit();
         Self { edges, polygons }
     }
 
