@@ -261,6 +261,11 @@ fn faces_of_one_group_are_smooth_and_faces_without_one_are_flat() {
 fn on_is_a_group_and_capital_letters_do_not_matter() {
     let loaded = read_with(&stairs(&["s on", "s OFF", "s On"]), &LoadOptions::default());
     assert_eq!(loaded.model.mesh.smoothing(), &Smoothing::Groups(vec![1, 0, 1]));
+    // Sets of 32 bits, with or without a sign: the highest bit, and all of them.
+    let sets = ["s -2147483648", "s 2147483648", "s 4294967295"];
+    let loaded = read_with(&stairs(&sets), &LoadOptions::default());
+    let right = vec![1 << 31, 1 << 31, u32::MAX - 1];
+    assert_eq!(loaded.model.mesh.smoothing(), &Smoothing::Groups(right));
     assert!(loaded.findings.is_empty(), "{:?}", loaded.findings);
 }
 
@@ -281,10 +286,13 @@ fn a_group_that_cannot_be_read_is_off_and_a_finding() {
     assert_eq!((finding.kind, finding.line), (FindingKind::SmoothingUnreadable, Some(9)));
     assert_eq!(
         finding.text,
-        "4 smoothing groups are neither numbers nor \"on\" or \"off\" (such as \"abc\") and are \
+        "3 smoothing groups are neither numbers nor \"on\" or \"off\" (such as \"abc\") and are \
          taken as off (first: line 9)"
     );
-    assert_eq!(loaded.model.mesh.smoothing(), &Smoothing::Groups(vec![1, 0, 0, 0, 0, 1]));
+    assert_eq!(
+        loaded.model.mesh.smoothing(),
+        &Smoothing::Groups(vec![1, 0, 0, 0, u32::MAX - 1, 1])
+    );
 }
 
 #[test]

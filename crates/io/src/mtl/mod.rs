@@ -496,6 +496,27 @@ mod tests {
     }
 
     #[test]
+    fn tr_of_meshlab_is_the_opacity_and_a_halo_is_told() {
+        let text = "newmtl m\nKa 0 0 0\nKd 1\nKs 0 0 0\nTr 0.75\n";
+        assert_eq!(read(text).0.opacity, 0.25);
+        let head = "#\n# Wavefront material file\n# Converted by Meshlab Group\n#\n\n";
+        assert_eq!(read(&format!("{head}{text}")).0.opacity, 0.75);
+        let (material, findings) = read("newmtl m\nKa 0 0 0\nKd 1\nKs 0 0 0\nd -halo 0.5\n");
+        assert_eq!((material.opacity, findings), (0.5, vec![FindingKind::HaloEven]));
+    }
+
+    #[test]
+    fn glass_with_d_0_is_seen_and_a_spectrum_is_told() {
+        let glass = "newmtl m\nKa 0 0 0\nKd 0\nKs 0 0 0\nillum 7\nNi 1.5\n";
+        let (material, findings) = read(&format!("{glass}d 0\n"));
+        assert_eq!(material.material.optics.transmission, Transmission::Opacity);
+        assert!(!findings.contains(&FindingKind::Transparent), "{findings:?}");
+        assert!(!findings.contains(&FindingKind::MendedTransparency), "{findings:?}");
+        let (_, findings) = read(&format!("{glass}Tf xyz 0.5 0.2 0.1\n"));
+        assert!(findings.contains(&FindingKind::MtlNumber), "{findings:?}");
+    }
+
+    #[test]
     fn packed_roughness_and_metalness_do_not_colour_highlights() {
         let packed = |ks| {
             let text = format!("newmtl m\nbsdf pbr\nKa 0 0 0\nKd .5 .25 1\nKs {ks}\n");

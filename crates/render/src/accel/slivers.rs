@@ -184,8 +184,8 @@ mod tests {
         let mut rng = Rng::new(1);
         let (mut before, mut after) = (0, 0);
         for _ in 0..2000 {
-            let number = rng.below(2000);
-            let (_, triangle) = whole[number as usize];
+            let number = rng.index(2000);
+            let (_, triangle) = whole[number];
             let [a, b, c] = triangle.corners.map(|it| DVec3::from_array(it.map(f64::from)));
             let [mut u, mut v] = [rng.unit(), rng.unit()];
             if u + v > 1.0 {
