@@ -161,8 +161,10 @@ fn reports_never_replace_other_files_and_a_damaged_picture_is_an_error() {
     let (_, err) = compare(2, folder.path(), &["a", "b", "--html", "page.html"]);
     assert!(err.contains("for folders, use --out"), "{err}");
     let before = std::fs::read(folder.path().join("a/deep/x.png")).unwrap();
-    let (out, _) = compare(2, folder.path(), &["a", "b", "--out", "a"]);
-    assert!(out.contains("error    deep/x.png: "), "an input is no output: {out}");
+    for out in ["a", "b/differences"] {
+        let (_, err) = compare(2, folder.path(), &["a", "b", "--out", out]);
+        assert!(err.contains("--out lies in a folder that is compared"), "{err}");
+    }
     assert_eq!(std::fs::read(folder.path().join("a/deep/x.png")).unwrap(), before);
     std::fs::write(folder.path().join("b/same.png"), "\u{89}PNG").unwrap();
     let (out, _) = compare(2, folder.path(), &["a", "b"]);

@@ -116,6 +116,12 @@ fn a_data_set_does_not_mix_with_the_pictures_of_an_earlier_one() {
         assert!(set("3").status.success(), "{kind}");
         assert!(contents(&folder.path().join("set")) == before, "{kind}");
         assert!(set("4").status.success(), "{kind}");
+        // Nor does one of another kind.
+        for other in ["nerf", "bop", "coco"].iter().filter(|other| **other != kind) {
+            let own = ["--dataset", other, "--out", "set", "--views", "4"];
+            let output = run(folder.path(), &[&draw[..], &own].concat());
+            assert_eq!(output.status.code(), Some(2), "{other} over {kind}");
+        }
         std::fs::remove_dir_all(folder.path().join("set")).unwrap();
     }
 }

@@ -120,9 +120,8 @@ fn settings_of_the_users_own_have_a_row_and_a_way_back() {
     assert_eq!(rows.len(), 5, "{rows:?}");
     assert!(rows[4].starts_with("Custom, 1 sample: "), "{rows:?}");
     let measured = editor.state().dial.figures().to_vec();
-    assert_eq!(measured.len(), 5);
-    let ideal = measured[4].error.map(|error| error.value);
-    assert_eq!((measured[3].settings, ideal), (own, Some(0.0)));
+    assert_eq!(measured.len(), 4);
+    assert_eq!(measured[3].error.map(|error| error.value), Some(0.0));
     editor.perform(Action::DialExact);
     assert!(editor.state().dial.current, "nothing is measured again");
     control(&editor, Role::RadioButton, &rows[4]).click();
@@ -153,6 +152,51 @@ fn over_a_low_picture_the_dial_is_one_row_until_it_is_clicked() {
     control(&editor, Role::RadioButton, exact).click();
     editor.settle();
     assert_eq!(editor.state().settings, preset("exact"));
+}
+
+#[test]
+fn the_line_leads_from_quick_to_exact_by_clicks_and_by_dragging() {
+    let mut editor = measured();
+    // The line is complete when it changes no more.
+    let mut points = points_of_line(&editor);
+    for _ in 0..60 {
+        std::thread::sleep(Duration::from_millis(500));
+        rest(&mut editor);
+        let before = std::mem::replace(&mut points, points_of_line(&editor));
+        if before == points && points.len() > 4 {
+            break;
+        }
+    }
+    assert!(points.len() > 2, "{points:?}");
+    assert!(points.windows(2).all(|pair| pair[0].1.x < pair[1].1.x), "{points:?}");
+    let [(quick, left), .., (exact, right)] = &points[..] else { panic!("{points:?}") };
+    control(&editor, Role::RadioButton, exact).click();
+    editor.settle();
+    assert_eq!(editor.state().settings, preset("ideal"));
+    assert!(editor.state().dial.current, "nothing is measured again");
+    control(&editor, Role::RadioButton, quick).click();
+    editor.settle();
+    let quickest = editor.state().settings;
+    assert_ne!(quickest, preset("ideal"));
+    assert!(editor.shows(quick), "the sentence describes the point: {quick}");
+    // The picture follows the pointer, which may leave the line.
+    let way = [*left, left.lerp(*right, 0.5), *right + egui::vec2(40.0, -30.0)];
+    editor.drag(egui::PointerButton::Primary, &way);
+    editor.settle();
+    assert_eq!(editor.state().settings, preset("ideal"));
+    editor.drag(egui::PointerButton::Primary, &[*right, *left]);
+    editor.settle();
+    assert_eq!(editor.state().settings, quickest);
+}
+
+/// The names of the points of the line, and their places.
+fn points_of_line(editor: &Editor) -> Vec<(String, egui::Pos2)> {
+    let all = editor.harness.query_all(By::new().role(Role::RadioButton));
+    let points = all.filter_map(|node| {
+        let name = node.accesskit_node().label()?;
+        name.contains(", an error of ").then(|| (name, node.rect().center()))
+    });
+    points.collect()
 }
 
 /// The names of the rows, which contain their figures.

@@ -128,8 +128,12 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Requests) {
             requests.push(chosen);
         }
     }
-    // What the figures mean, in a sentence.
-    let said = in_words(state.dial.figures()).filter(|_| state.dial.current);
+    // What the figures mean, in a sentence, or what the point of the line is that is drawn.
+    let point = state.dial.on_line(&state.settings).filter(|_| on.is_none());
+    let said = match &point {
+        Some(figures) => Some(point_in_words(figures)),
+        None => in_words(state.dial.figures()).filter(|_| state.dial.current),
+    };
     let waits_for = match state.lab.running {
         Some(_) => "Paused while the laboratory measures.",
         None if state.dial.current => "Comparing parts of the pictures with the ideal...",
@@ -137,8 +141,20 @@ fn contents(ui: &mut Ui, state: &State, requests: &mut Requests) {
     };
     let said = said.unwrap_or_else(|| waits_for.to_owned());
     ui.add_space(2.0);
-    ui.add(egui::Label::new(RichText::new(said).small()).wrap());
+    // Two lines high, so that the line below does not move while one drags.
+    let height = 2.0 * ui.text_style_height(&TextStyle::Small);
+    ui.allocate_ui(vec2(WIDTH, height), |ui| {
+        ui.set_min_height(height);
+        ui.add(egui::Label::new(RichText::new(said).small()).wrap());
+    });
     line_ui(ui, state, requests);
+}
+
+/// Describes a point of the line.
+fn point_in_words(figures: &Figures) -> String {
+    let error = figures.error.and_then(|error| error_in_words(&error)).unwrap_or_default();
+    let settings = figures.settings.in_words();
+    format!("{}, an error of {error}: {settings}", milliseconds(&figures.ms))
 }
 
 /// Shows the line from quick to exact: to the right, the time in powers of ten; upwards, the error,
@@ -171,18 +187,16 @@ fn line_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
         let at = align.pos_in_rect(&below.shrink2(vec2(4.0, 0.0)));
         painter.text(at, align, text, TextStyle::Small.resolve(ui.style()), weak);
     }
-    let now = state.dial.of(&state.settings).map(|figures| figures.settings);
+    let now = state.dial.on_line(&state.settings).map(|figures| figures.settings);
     let on = line.iter().position(|(_, figures)| Some(figures.settings) == now);
     let mut chosen = None;
     let ids: Vec<Id> = (0..line.len()).map(|i| ui.scope_id().with(("point", i))).collect();
     let stop = regions::stop(ui, &ids, on, line.len());
-    for (i, (at, (settings, figures))) in places.iter().zip(&line).enumerate() {
+    for (i, (at, (_, figures))) in places.iter().zip(&line).enumerate() {
         let is_on = on == Some(i);
         let square = Rect::from_center_size(*at, vec2(2.0 * POINT + 4.0, 2.0 * POINT + 4.0));
         let point = ui.interact(square, ids[i], regions::sense(Sense::click(), i == stop));
-        let error = figures.error.and_then(|error| error_in_words(&error)).unwrap_or_default();
-        let at_rest = state.dial.at_rest(settings, state);
-        let name = format!("{}, error {error}: {}", milliseconds(&figures.ms), at_rest.in_words());
+        let name = point_in_words(figures);
         point.widget_info(|| WidgetInfo::selected(Role::RadioButton, true, is_on, &name));
         let radius = if is_on || point.hovered() { POINT + 1.5 } else { POINT - 0.5 };
         let fill = if is_on { accent } else { ui.visuals().window_fill };

@@ -45,15 +45,24 @@ impl DialState {
         last.measured.line.iter().map(chosen).collect()
     }
 
+    /// Returns the figures of settings that are on the line.
+    pub(crate) fn on_line(&self, settings: &Settings) -> Option<Figures> {
+        let at_rest = self.last.as_ref()?.of.at_rest(settings);
+        let mut line = self.line().into_iter().map(|(_, figures)| figures);
+        line.find(|figures| figures.settings == at_rest)
+    }
+
     /// Returns settings as the window shows them at rest.
     pub(crate) fn at_rest(&self, settings: &Settings, state: &State) -> Settings {
         let DialWish { refined, .. } = state.wish();
         refined.map_or(*settings, |samples| settings.refined_to(samples))
     }
 
-    /// Keeps settings that no preset has.
+    /// Keeps settings that neither a preset nor the line has.
     pub(crate) fn keep_own(&mut self, settings: &Settings) {
-        if !AccuracyPreset::dial().iter().any(|preset| preset.of(settings) == *settings) {
+        let is_preset =
+            AccuracyPreset::dial().iter().any(|preset| preset.of(settings) == *settings);
+        if !is_preset && self.on_line(settings).is_none() {
             self.own = Some(*settings);
         }
     }

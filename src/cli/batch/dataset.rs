@@ -182,7 +182,7 @@ pub(super) fn check_used_folder(
         let later = numbered(&folder, ".png").filter(move |(number, _)| *number >= count);
         later.map(|(_, path)| path)
     });
-    let stale: BTreeSet<PathBuf> = stale.collect();
+    let stale: BTreeSet<PathBuf> = stale.chain(of_other_kind(dataset, folder)).collect();
     let Some(first) = stale.first() else { return Ok(()) };
     let (shown, first) = (folder.display(), first.display());
     Err(Failure::Usage(format!(
@@ -190,6 +190,23 @@ pub(super) fn check_used_folder(
          or choose another folder with --out",
         stale.len(),
     )))
+}
+
+/// Returns the pictures in a folder that belong to data sets of other kinds.
+fn of_other_kind(dataset: Dataset, folder: &Path) -> impl Iterator<Item = PathBuf> {
+    let coco = || vec![folder.join("images")];
+    let bop = || numbered(folder, "").map(|(_, scene)| scene.join("rgb")).collect();
+    let nerf = || {
+        let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        entries.map(|entry| entry.path().join("color")).collect()
+    };
+    let folders: [Vec<PathBuf>; 2] = match dataset {
+        Dataset::Coco => [bop(), nerf()],
+        Dataset::Bop => [coco(), nerf()],
+        Dataset::Nerf => [coco(), bop()],
+    };
+    let pictures = |folder: PathBuf| numbered(&folder, ".png").map(|(_, path)| path);
+    folders.into_iter().flatten().flat_map(pictures)
 }
 
 /// Iterates over the entries of a folder with names such as 000012.png or 000012_000003.png, with

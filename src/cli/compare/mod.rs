@@ -142,6 +142,17 @@ impl Compare {
     }
 }
 
+/// Returns whether a path, which may not exist yet, lies in a folder, links resolved.
+fn lies_in(path: &Path, folder: &Path) -> bool {
+    let resolved = |path: &Path| {
+        let path = std::path::absolute(path).ok()?;
+        let of =
+            |above: &Path| Some(above.canonicalize().ok()?.join(path.strip_prefix(above).ok()?));
+        path.ancestors().find_map(of)
+    };
+    resolved(path).zip(resolved(folder)).is_some_and(|(path, folder)| path.starts_with(folder))
+}
+
 /// A comparison of pictures or folders.
 struct Comparison<'a> {
     arguments: &'a Compare,
@@ -157,6 +168,12 @@ impl Comparison<'_> {
         let Compare { out, html, junit, .. } = self.arguments;
         if let Some(out) = out.as_ref().filter(|_| !self.are_folders) {
             self.check_picture(out)?;
+        }
+        let Compare { a, b, .. } = self.arguments;
+        if self.are_folders && out.as_ref().is_some_and(|out| lies_in(out, a) || lies_in(out, b)) {
+            let reason = "--out lies in a folder that is compared: its pictures would be compared \
+                          next time";
+            return Err(Failure::Absent(reason.to_owned()));
         }
         match html {
             Some(_) if self.are_folders => {
