@@ -5,7 +5,7 @@ use super::{Dial, Figures, Step};
 use crate::budget::model::{self, predictions};
 use crate::budget::{FreeAxis, free_axes, is_sound};
 use crate::front::{Point, front};
-use marraztu_core::accuracy::{Samples, Settings, Shot};
+use marraztu_core::accuracy::{Choice, Samples, Settings, Shot};
 use marraztu_render::{Cancelled, Renderer};
 
 /// The most combinations that are measured.
@@ -36,29 +36,16 @@ impl Line {
     /// Prepares to measure the line of a shot with the default settings. Pictures at rest have at
     /// least `refined` samples; `rows` are known already.
     pub fn new(shot: &Shot, refined: Option<Samples>, rows: &[Figures]) -> Self {
-        let free = free_axes(shot, &[]);
-        let mut line = Self {
-            shot: shot.clone(),
-            refined,
-            free,
-            dial: Dial::new(shot, &[]),
-            known: rows.to_vec(),
-            combines: false,
-        };
-        let base = shot.settings;
-        let mut all = vec![line.at_rest(&base)];
-        for choice in line.free.iter().flat_map(|free| &free.choices) {
-            let settings = line.at_rest(&choice.of(&base));
+        let (free, base) = (free_axes(shot, &[]), shot.settings);
+        let mut all = vec![at_rest(&base, refined)];
+        for choice in free.iter().flat_map(|free| &free.choices) {
+            let settings = at_rest(&choice.of(&base), refined);
             if (choice.among)(&base).is_ok() && !all.contains(&settings) {
                 all.push(settings);
             }
         }
-        line.dial = Dial::new(shot, &all);
-        line
-    }
-
-    fn at_rest(&self, settings: &Settings) -> Settings {
-        self.refined.map_or(*settings, |samples| settings.refined_to(samples))
+        let dial = Dial::new(shot, &all);
+        Self { shot: shot.clone(), refined, free, dial, known: rows.to_vec(), combines: false }
     }
 
     /// Takes the next step: draws one picture or one window.
@@ -90,12 +77,13 @@ impl Line {
     fn combinations(&self, measured: &[Figures]) -> Vec<Settings> {
         let base = self.shot.settings;
         let of = |settings: &Settings| {
-            let found = measured.iter().find(|it| it.settings == self.at_rest(settings))?;
+            let found =
+                measured.iter().find(|it| it.settings == at_rest(settings, self.refined))?;
             Some([found.ms.value, found.error?.value * found.error?.value])
         };
         let Some(start) = of(&base) else { return Vec::new() };
         let steps = self.free.iter().map(|free| {
-            let step = |choice: &&'static marraztu_core::accuracy::Choice| {
+            let step = |choice: &&'static Choice| {
                 let [ms, error] = of(&choice.of(&base))?;
                 let (time, error) = (ms / start[0], error - start[1]);
                 let is_of_use = time < 1.0 - WORTHWHILE || error < 0.0;
@@ -108,7 +96,7 @@ impl Line {
         let is_known = |it: &Settings| self.known.iter().any(|known| known.settings == *it);
         let mut new: Vec<Settings> = Vec::new();
         for (settings, _) in all {
-            let at_rest = self.at_rest(&settings);
+            let at_rest = at_rest(&settings, self.refined);
             if is_sound(&settings, &base) && !is_known(&at_rest) && !new.contains(&at_rest) {
                 new.push(at_rest);
             }
@@ -134,6 +122,11 @@ impl Line {
         }
         line
     }
+}
+
+/// Returns settings with at least `refined` samples.
+fn at_rest(settings: &Settings, refined: Option<Samples>) -> Settings {
+    refined.map_or(*settings, |samples| settings.refined_to(samples))
 }
 
 #[cfg(test)]
