@@ -559,7 +559,10 @@ mod tests {
         );
         let Material { diffuse, specular, exponent, .. } = material.material;
         assert_eq!((diffuse, specular, exponent), ([0.5; 3], [1.0; 3], 9.0));
-        assert_eq!(findings, [FindingKind::MtlNumber, FindingKind::Illumination]);
+        assert_eq!(
+            findings,
+            [FindingKind::MtlNumber, FindingKind::Illumination, FindingKind::HaloEven]
+        );
     }
 
     #[test]

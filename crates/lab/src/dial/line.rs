@@ -115,7 +115,7 @@ impl Line {
         let (known, points): (Vec<Figures>, Vec<Point>) = known.unzip();
         let mut line: Vec<Figures> = Vec::new();
         for i in front(&points, GAIN) {
-            // Where the next point is hardly slower, this one is of no use.
+            // If the next point is hardly slower, this one is of no use.
             let is_close = |last: &mut Figures| known[i].ms.value < CLOSE * last.ms.value;
             line.pop_if(is_close);
             line.push(known[i]);

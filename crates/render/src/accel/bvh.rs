@@ -2,8 +2,9 @@
 //!
 //! `obvhs` builds the tree from boxes scaled to the unit cube, so it never meets infinities. It
 //! takes quadratic time for boxes that coincide, so equal boxes are merged into one leaf first. The
-//! boxes of the finished tree exactly bound the unscaled triangles, or parts of long ones. A leaf stores its triangles in
-//! blocks of eight, coordinate by coordinate, so SIMD code prepares eight at once.
+//! boxes of the finished tree exactly bound the unscaled triangles, or parts of long ones. A leaf
+//! stores its triangles in blocks of eight, coordinate by coordinate, so SIMD code prepares eight
+//! at once.
 //!
 //! Meister and Bittner, "Parallel Locally-Ordered Clustering for Bounding Volume Hierarchy
 //! Construction", 2018.
@@ -24,7 +25,7 @@ use marraztu_core::scene::{Accelerator, AcceleratorPlace, Mesh};
 
 use super::draw_order::index;
 use super::eight_boxes::{Box3, EMPTY, EightBoxes, union};
-use super::slivers::split;
+use super::slivers::{have_empty_boxes, split};
 
 /// A BVH of a mesh's triangles.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -295,7 +296,7 @@ impl Groups {
                 |corner: usize| each(positions[mesh.vertex_of(corner) as usize], |x| x + 0.0);
             each(mesh.triangle(number as usize), place)
         };
-        let mut all: Vec<(Box3, BvhTriangle)> = (0..index(mesh.triangle_count()))
+        let mut all: Vec<BvhTriangle> = (0..index(mesh.triangle_count()))
             .into_par_iter()
             .map(|number| BvhTriangle { corners: corners(number), number })
             // With two equal corners, a triangle is a line and blocks no ray.
@@ -303,24 +304,22 @@ impl Groups {
                 let [a, b, c] = it.corners;
                 a != b && b != c && c != a
             })
-            .map(|it| (box_of(&it.corners), it))
             .collect();
-        split(&mut all);
         let part = |it: &BvhTriangle| mesh.polygon_parts()[mesh.polygon_of(it.number) as usize];
-        let key = |it: &BvhTriangle| (part(it), sorted(&it.corners));
+        let key = |it: &BvhTriangle| (bits(&box_of(&it.corners)), part(it), sorted(&it.corners));
         // Sorting by box brings the triangles of a group together.
-        all.par_sort_unstable_by_key(|(around, it)| (bits(around), it.number));
+        all.par_sort_unstable_by_key(|it| (bits(&box_of(&it.corners)), it.number));
         let mut groups = Self::default();
-        for own in all.chunk_by_mut(|(a, _), (b, _)| a == b) {
+        for own in all.chunk_by_mut(|a, b| box_of(&a.corners) == box_of(&b.corners)) {
             // Two triangles are neighbours in any order, so only larger groups need the sort.
             if own.len() > 2 {
-                own.sort_by_key(|(_, it)| (key(it), it.number));
+                own.sort_by_key(|it| (key(it), it.number));
             }
-            groups.boxes.push(own[0].0);
+            groups.boxes.push(box_of(&own[0].corners));
             groups.starts.push(groups.triangles.len());
             // After sorting by key, triangles that coincide in one part follow each other.
             let mut last = None;
-            for (_, it) in &*own {
+            for it in &*own {
                 let this = Some(key(it));
                 if this != last {
                     groups.triangles.push(*it);
@@ -329,7 +328,28 @@ impl Groups {
             }
         }
         groups.starts.push(groups.triangles.len());
+        if have_empty_boxes(&groups.triangles) { groups.split() } else { groups }
+    }
+
+    /// Splits the boxes of single triangles.
+    fn split(self) -> Self {
+        let (mut singles, mut groups) = (Vec::new(), Self::default());
+        for (around, ends) in self.boxes.iter().zip(self.starts.windows(2)) {
+            match &self.triangles[ends[0]..ends[1]] {
+                [one] => singles.push((*around, *one)),
+                several => groups.add(*around, several),
+            }
+        }
+        split(&mut singles);
+        singles.iter().for_each(|(around, one)| groups.add(*around, &[*one]));
+        groups.starts.push(groups.triangles.len());
         groups
+    }
+
+    fn add(&mut self, around: Box3, triangles: &[BvhTriangle]) {
+        self.boxes.push(around);
+        self.starts.push(self.triangles.len());
+        self.triangles.extend_from_slice(triangles);
     }
 }
 

@@ -78,9 +78,16 @@ impl Ord for Part {
     }
 }
 
+/// Returns whether the boxes of triangles have much empty area.
+pub(super) fn have_empty_boxes(all: &[BvhTriangle]) -> bool {
+    let around = all.iter().flat_map(|it| it.corners);
+    let [low, high] = around.fold(EMPTY, |around, corner| union(around, [corner; 2])).map(double);
+    let empty: f64 = all.iter().map(|it| empty_area(&it.corners.map(double))).sum();
+    empty > EMPTY_AREA * half_area(high - low)
+}
+
 /// Replaces triangles with large empty boxes by parts, the emptiest first.
 pub(super) fn split(all: &mut Vec<(Box3, BvhTriangle)>) {
-    let double = |corner: [f32; 3]| DVec3::from_array(corner.map(f64::from));
     let [low, high] = all.iter().fold(EMPTY, |around, (own, _)| union(around, *own)).map(double);
     let most = EMPTY_AREA * half_area(high - low);
     let own = |(_, it): &(Box3, BvhTriangle)| empty_area(&it.corners.map(double));
@@ -148,6 +155,10 @@ fn extent(corners: &[DVec3]) -> (DVec3, DVec3) {
     (low, corners.iter().fold(DVec3::NEG_INFINITY, |high, corner| high.max(*corner)))
 }
 
+fn double(corner: [f32; 3]) -> DVec3 {
+    DVec3::from_array(corner.map(f64::from))
+}
+
 fn half_area(sides: DVec3) -> f64 {
     sides.x * sides.y + sides.y * sides.z + sides.z * sides.x
 }
@@ -157,7 +168,7 @@ mod tests {
     use super::*;
     use marraztu_core::base::rng::Rng;
 
-    /// A disk in the plane y = 0 of so many triangles around its centre.
+    /// A disk in the plane y = 0 of this number of triangles around its centre.
     fn disk(count: u32) -> Vec<(Box3, BvhTriangle)> {
         let on_rim = |i: u32| {
             let (sin, cos) = libm::sincosf(std::f32::consts::TAU * i as f32 / count as f32);
