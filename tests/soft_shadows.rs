@@ -22,6 +22,7 @@ use marraztu_core::scene::{
     Scene, Sides, Tracked, View,
 };
 use marraztu_io as io;
+use marraztu_render::screen::coverage::PixelBox;
 use marraztu_render::{Effect, Renderer, explain_frame, plan_frame};
 
 /// Sets the only light of a scene.
@@ -161,6 +162,42 @@ fn samples_of_a_pixel_that_are_lit_one_by_one_share_the_samples_of_a_light() {
     assert!(few != some && some != many);
     let whole = |of| drawn(Samples::Sixteen, of, LightAt::Pixel);
     assert!(whole(LightSamples::TwoFiftySix) != whole(LightSamples::Sixteen));
+}
+
+#[test]
+fn the_noise_of_neighbours_cancels_and_windows_have_that_of_the_whole() {
+    let (mut scene, view) = screen();
+    light(&mut scene, sun(DVec3::new(1.0, 0.0, 2.0)), 90.0);
+    let side = 128;
+    let [few, many] = [LightSamples::Four, LightSamples::TwoFiftySix]
+        .map(|samples| draw(&scene, &view, &with(samples), side));
+    // The mean square of the error of squares of pixels.
+    let error = |of: usize| {
+        let squares =
+            (0..side).step_by(of).flat_map(|y| (0..side).step_by(of).map(move |x| (x, y)));
+        let errors = squares.map(|(x, y)| {
+            let pixels = (0..of * of).map(|i| [x + i % of, y + i / of]);
+            let one =
+                |[x, y]: [usize; 2]| f64::from(few.pixel(x, y)[1]) - f64::from(many.pixel(x, y)[1]);
+            pixels.map(one).sum::<f64>() / (of * of) as f64
+        });
+        let errors: Vec<f64> = errors.collect();
+        errors.iter().map(|error| error * error).sum::<f64>() / errors.len() as f64
+    };
+    // Independent errors of 16 pixels would leave a sixteenth.
+    let (pixels, squares) = (error(1), error(4));
+    assert!(pixels > 1.0 && squares < pixels / 40.0, "{pixels} {squares}");
+    // A window that begins anywhere.
+    for at in [LightAt::Pixel, LightAt::Sample] {
+        let settings = Settings { light: at, samples: Samples::Four, ..with(LightSamples::Four) };
+        let plan = plan_frame(&Shot::new(&scene, &view, &settings, Size::new(side, side)));
+        let whole = Renderer::default().render(&plan).clone();
+        let window = PixelBox { left: 37, top: 50, right: 101, bottom: 83 };
+        let part = Renderer::default().render_window(&plan, window, &|| true).unwrap();
+        for (i, pixel) in part.pixels().iter().enumerate() {
+            assert_eq!(*pixel, whole.pixel(37 + i % 64, 50 + i / 64), "{at:?} {i}");
+        }
+    }
 }
 
 #[test]

@@ -68,10 +68,7 @@ pub fn of_dial(
     settings: &Settings,
     refined: Option<Samples>,
 ) -> impl Iterator<Item = (&'static AccuracyPreset, Settings)> {
-    let of = move |preset: &'static AccuracyPreset| {
-        let settings = preset.of(settings);
-        (preset, refined.map_or(settings, |samples| settings.refined_to(samples)))
-    };
+    let of = move |preset: &'static AccuracyPreset| (preset, preset.of(settings).at_rest(refined));
     AccuracyPreset::dial().iter().map(of)
 }
 

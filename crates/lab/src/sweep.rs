@@ -56,7 +56,7 @@ impl Question {
 
     /// Returns the settings of a picture at rest.
     pub fn at_rest(&self, settings: &Settings) -> Settings {
-        self.refined.map_or(*settings, |samples| settings.refined_to(samples))
+        settings.at_rest(self.refined)
     }
 }
 

@@ -34,9 +34,9 @@ pub(crate) struct Dialled {
 /// The figures that were measured so far.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Measured {
-    /// Those of each preset, in their order; fewer before the ideal is known.
+    /// The presets, in their order; fewer before the ideal is known.
     pub(crate) rows: Vec<Figures>,
-    /// Those of the user's own settings.
+    /// The user's own settings.
     pub(crate) own: Option<Figures>,
     /// The settings that no other ones beat, from quick to exact.
     pub(crate) line: Vec<Figures>,
@@ -65,8 +65,7 @@ impl Dialled {
 
     /// Returns settings as the window shows them at rest. Choices of models do not matter.
     pub(crate) fn at_rest(&self, settings: &Settings) -> Settings {
-        let settings = settings.modelled_as(&self.shot.settings);
-        self.refined.map_or(settings, |samples| settings.refined_to(samples))
+        settings.modelled_as(&self.shot.settings).at_rest(self.refined)
     }
 
     fn rows(&self) -> Vec<Settings> {
@@ -142,6 +141,11 @@ impl IdleDial {
             measured.own = dial.figures().first().copied();
             if step == Step::Done {
                 self.own = None;
+                // They may beat the points of the line.
+                if let (Some(line), Some(own)) = (&mut self.line, measured.own) {
+                    line.add(own);
+                    measured.line = line.figures();
+                }
             }
             return Ok(Some(step));
         }

@@ -55,7 +55,7 @@ impl DialState {
     /// Returns settings as the window shows them at rest.
     pub(crate) fn at_rest(&self, settings: &Settings, state: &State) -> Settings {
         let DialWish { refined, .. } = state.wish();
-        refined.map_or(*settings, |samples| settings.refined_to(samples))
+        settings.at_rest(refined)
     }
 
     /// Keeps settings that neither a preset nor the line has.

@@ -192,6 +192,12 @@ impl Settings {
         Self { samples: if is_more && self.can_refine() { samples } else { self.samples }, ..self }
     }
 
+    /// These settings as a picture at rest has them: with at least `refined` samples per pixel, if
+    /// it is refined.
+    pub fn at_rest(&self, refined: Option<Samples>) -> Self {
+        refined.map_or(*self, |samples| self.refined_to(samples))
+    }
+
     /// Describes the samples of a picture: "1 sample", "16 samples", "1/4 sample".
     pub fn samples_in_words(&self) -> String {
         match (self.resolution, self.samples) {

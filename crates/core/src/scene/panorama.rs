@@ -247,9 +247,9 @@ impl PanoramaLight {
         !self.shares.is_empty()
     }
 
-    /// Returns the light around a direction, over about the solid angle that each of a number of
-    /// samples has of all directions, so that no bright spot falls on a single one (Křivánek and
-    /// Colbert, "Real-time Shading with Filtered Importance Sampling", EGSR 2008).
+    /// Returns the light around a direction, over a quarter of the solid angle that each of a number
+    /// of samples has of half of all directions, so that no bright spot falls on a single one
+    /// (Křivánek and Colbert, "Real-time Shading with Filtered Importance Sampling", EGSR 2008).
     pub fn spread(&self, direction: DVec3, samples: u32) -> [f64; 3] {
         let columns = match samples {
             0..16 => 8,
@@ -267,6 +267,9 @@ impl PanoramaLight {
         let guide = self.guide();
         let place = guide.place(direction);
         let light = guide.light[place].map(f64::from);
+        if !self.has_lamps() {
+            return (light, 0.0);
+        }
         let before = if place > 0 { self.shares[place - 1] } else { 0.0 };
         let density = (self.shares[place] - before) / guide.solid_angle(place);
         (light, density)

@@ -37,9 +37,9 @@ impl Line {
     /// least `refined` samples; `rows` are known already.
     pub fn new(shot: &Shot, refined: Option<Samples>, rows: &[Figures]) -> Self {
         let (free, base) = (free_axes(shot, &[]), shot.settings);
-        let mut all = vec![at_rest(&base, refined)];
+        let mut all = vec![base.at_rest(refined)];
         for choice in free.iter().flat_map(|free| &free.choices) {
-            let settings = at_rest(&choice.of(&base), refined);
+            let settings = choice.of(&base).at_rest(refined);
             if (choice.among)(&base).is_ok() && !all.contains(&settings) {
                 all.push(settings);
             }
@@ -61,9 +61,7 @@ impl Line {
             return Ok(Step::More);
         }
         let measured = self.dial.figures();
-        let is_new = |it: &Figures| !self.known.iter().any(|known| known.settings == it.settings);
-        let new: Vec<Figures> = measured.iter().filter(|it| is_new(it)).copied().collect();
-        self.known.extend(new);
+        measured.iter().for_each(|it| self.add(*it));
         if self.combines {
             return Ok(Step::Done);
         }
@@ -73,12 +71,19 @@ impl Line {
         Ok(if combinations.is_empty() { Step::Done } else { Step::Better })
     }
 
+    /// Adds figures that were measured elsewhere, unless those of their settings are known.
+    pub fn add(&mut self, figures: Figures) {
+        if !self.known.iter().any(|known| known.settings == figures.settings) {
+            self.known.push(figures);
+        }
+    }
+
     /// Returns the combinations of choices that are predicted to be on the front.
     fn combinations(&self, measured: &[Figures]) -> Vec<Settings> {
         let base = self.shot.settings;
         let of = |settings: &Settings| {
-            let found =
-                measured.iter().find(|it| it.settings == at_rest(settings, self.refined))?;
+            let at_rest = settings.at_rest(self.refined);
+            let found = measured.iter().find(|it| it.settings == at_rest)?;
             Some([found.ms.value, found.error?.value * found.error?.value])
         };
         let Some(start) = of(&base) else { return Vec::new() };
@@ -96,7 +101,7 @@ impl Line {
         let is_known = |it: &Settings| self.known.iter().any(|known| known.settings == *it);
         let mut new: Vec<Settings> = Vec::new();
         for (settings, _) in all {
-            let at_rest = at_rest(&settings, self.refined);
+            let at_rest = settings.at_rest(self.refined);
             if is_sound(&settings, &base) && !is_known(&at_rest) && !new.contains(&at_rest) {
                 new.push(at_rest);
             }
@@ -122,11 +127,6 @@ impl Line {
         }
         line
     }
-}
-
-/// Returns settings with at least `refined` samples.
-fn at_rest(settings: &Settings, refined: Option<Samples>) -> Settings {
-    refined.map_or(*settings, |samples| settings.refined_to(samples))
 }
 
 #[cfg(test)]

@@ -72,8 +72,8 @@ pub(super) fn place_points<T: ShadingNumber>(
     }
 }
 
-/// Returns the place of a pixel's samples in the sequences of lights. Samples that are lit one by
-/// one share those of their pixel.
+/// Returns the place of a pixel's samples in the sequences of lights. If each sample of a pixel is
+/// lit, each has a part of them.
 pub(super) fn light_place(plan: &FramePlan, [x, y]: [i32; 2]) -> u32 {
     let [left, top] = plan.shift.map(|shift| (shift + SUBPIXELS / 2).div_euclid(SUBPIXELS));
     let pixel = place_of_pixel([x + left, y + top]);

@@ -3,9 +3,9 @@
 //!
 //! Of any 2^k points that begin at a multiple of 2^k, one lies in each cell of every grid of 2^k
 //! equal cells. Scrambling keeps that (Owen, "Randomly Permuted (t, m, s)-Nets", 1995), and makes
-//! noise instead of stripes. Pixels take their parts along a Z-curve, so the samples of each square
-//! of 2^k pixels are spread as evenly as those of one: what is too bright in a pixel is too dark
-//! beside it, and noise is fine instead of coarse (Ahmed and Wonka, "Screen-space Blue-noise
+//! noise instead of stripes. Pixels take their parts along a Z-curve, so the samples of a square of
+//! pixels are spread as evenly as the samples of one pixel. The errors of neighbours mostly
+//! cancel, so the noise is fine (Ahmed and Wonka, "Screen-space Blue-noise
 //! Diffusion of Monte Carlo Sampling Error via Hierarchical Ordering of Pixels", 2020). All is done
 //! in integers: the points are the same everywhere.
 //!
@@ -76,7 +76,7 @@ pub(crate) fn place_of_point(point: DVec3) -> u32 {
 
 /// Returns the place of the points that a pixel's rays meet after this many bounces.
 pub(crate) const fn after_bounces(place: u32, bounces: u32) -> u32 {
-    // All places change alike, so those of squares of pixels stay together.
+    // All places change alike, so the places of a square of pixels stay together.
     place ^ mixed(bounces)
 }
 
