@@ -247,9 +247,10 @@ impl PanoramaLight {
         !self.shares.is_empty()
     }
 
-    /// Returns the light around a direction, over a quarter of the solid angle that each of a number
-    /// of samples has of half of all directions, so that no bright spot falls on a single one
-    /// (Křivánek and Colbert, "Real-time Shading with Filtered Importance Sampling", EGSR 2008).
+    /// Returns the light around a direction, over a quarter of the solid angle that each of a
+    /// number of samples has of half of all directions, so that no bright spot falls on a single
+    /// one (Křivánek and Colbert, "Real-time Shading with Filtered Importance Sampling", EGSR
+    /// 2008).
     pub fn spread(&self, direction: DVec3, samples: u32) -> [f64; 3] {
         let columns = match samples {
             0..16 => 8,
