@@ -178,7 +178,8 @@ fn line_ui(ui: &mut Ui, state: &State, requests: &mut Requests) {
     };
     let places: Vec<egui::Pos2> = line.iter().map(place).collect();
     let (weak, accent) = (ui.visuals().weak_text_color(), theme::accent(ui.visuals()));
-    let whole = ui.interact(rect, ui.scope_id().with("line"), Sense::drag());
+    // Dragged only: the keyboard walks along the points.
+    let whole = ui.interact(rect, ui.scope_id().with("line"), Sense::DRAG);
     let painter = ui.painter();
     painter.hline(plot.x_range(), plot.bottom(), (1.0, weak.gamma_multiply(0.5)));
     painter.line(places.clone(), (1.5, accent.gamma_multiply(0.8)));
